@@ -119,11 +119,11 @@ def solved(step: Step | None, begin: dict[str, np.ndarray], steps: int) -> tuple
     if step is None:
         parked = nh.steer(nh.discretize(SLEIGH, DURATION / steps), begin, GOAL, steps=steps)
         return parked.controls[..., :2], parked.missed, parked.converged
-    size = np.tile(np.sqrt(steps) * np.array([INERTIA, MASS]) / DURATION**2, steps)
+    size = np.tile(np.sqrt(steps) * np.array([INERTIA, MASS]) / DURATION**2, (len(begin["configuration"]), steps))
     free = np.full(2 * steps, np.inf)
     first = states(begin)
-    forces, gap, is_least = best(missed_by(step, first, steps), size, len(first), (-free, free))
-    return forces.reshape(-1, steps, 2), gap, is_least
+    forces, missed, is_least = best(missed_by(step, first, steps), size, (-free, free))
+    return forces.reshape(-1, steps, 2), np.abs(missed).max(axis=1), is_least
 
 
 def states(begin: dict[str, np.ndarray]) -> np.ndarray:

@@ -167,6 +167,29 @@ def _ready(make: Callable[..., Any], *units: float) -> Answer:
     return {"outcome": int(orbit.outcome), "shape": orbit.configuration[:, 2:]}
 
 
+def _led_back(mass: float, length: float, time: float) -> Answer:
+    """Return a motion under feedback, with errors and forces weighed by their units."""
+
+    def lagrangian(q: Any, v: Any, p: Any) -> Any:
+        return p["mass"] * (v[0] ** 2 + v[1] ** 2 / 2) / 2 - p["spring"] * (q[0] - q[1]) ** 2 / 2
+
+    def constraint(q: Any, p: Any) -> Any:
+        return jnp.array([[1.0, -0.3 * jnp.sin(q[0] / p["size"])]])
+
+    parameters = {"mass": mass, "spring": 0.5 * mass / time**2, "size": length}
+    system: Any = nh.LagrangeDAlembert(lagrangian, constraint, dimension=2, parameters=parameters)
+
+    def start(place: float) -> dict[str, Any]:
+        velocity = np.array([0.3 * np.sin(place), 1.0]) * 0.7 * length / time
+        return {"configuration": np.array([place, 0.2]) * length, "body_velocity": velocity}
+
+    sizes, force = np.repeat([length, length / time], 2), mass * length / time**2
+    weights = {"state_weight": sizes**-2.0 / time, "control_weight": force**-2.0 / time, "final_weight": sizes**-2.0}
+    feedback = nh.tracking_feedback(nh.discretize(system, 0.1 * time), start(0.3), np.zeros((20, 2)), **weights)
+    motion = feedback.simulate(**start(0.35))
+    return {"error": motion.error / sizes, "forces": motion.controls / force}
+
+
 QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  # with the rounding errors of answers
     **{f"steps of a {name}": (_steps, (name,), 0.0) for name in STARTS},
     **{f"flow of a {name}": (_flow, (name,), 1e-14) for name in STARTS},
@@ -179,6 +202,7 @@ QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  
     "critical value": (_critical, (), 1e-12),
     "phase of a car": (_phase, (_car, []), 1e-11),
     "phase of a snakeboard": (_phase, (_board, [0.3]), 1e-11),
+    "feedback": (_led_back, (), 1e-12),
     "growth of a car": (_growth, (_car,), 0.0),
     "growth of a snakeboard": (_growth, (_board,), 0.0),
     "car": (_ready, (_car,), 0.0),
@@ -194,6 +218,7 @@ QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  
         "flow of a driven cart-*",
         "linear flow-*",
         "critical value-time",
+        "feedback-time",
         "car-*",
     ],
 )

@@ -18,6 +18,7 @@ from nonholo.systems import (
     AbstractSystem,
     NormalForm,
     alike_in_time,
+    direction_lengths,
     gyroscopic_form,
     null_space,
     refuse_forces,
@@ -338,14 +339,14 @@ def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
     if not isinstance(orbit, Orbit):
         from nonholo.lagrange_dalembert import tangents
 
-        return tangents.tangent_map(orbit, in_own_units=True)
-    system, steps = orbit.system, orbit.tangent
-    lengths = system.direction_lengths
+        maps, rows, units, places = tangents.changes(orbit)
+        return tangents.among_admissible(maps, rows, alike_in_time(maps, units, places, np.ptp(orbit.time)))
+    system, maps = orbit.system, orbit.tangent
+    lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
     momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2)
-    sizes = np.append(system.displacement_units, momenta)[-steps.shape[-1] :]
-    steps = steps * (sizes / sizes[:, None])
-    sizes = alike_in_time(steps, len(sizes) - len(momenta), np.ptp(orbit.time))
-    return steps * (sizes / sizes[:, None])
+    units = np.append(system.displacement_units, momenta)[-maps.shape[-1] :]
+    units = alike_in_time(maps, units, len(units) - len(momenta), np.ptp(orbit.time))
+    return maps * (units / units[:, None])
 
 
 def _check_spread(steps: Float[np.ndarray, "L d d"]) -> None:

@@ -210,8 +210,7 @@ def _linear_forces(forced: Forced) -> LinearForces:
         vectors, levers = vectors.reshape(-1, group.size), levers.reshape(group.dim, -1, group.size)
     body_levers = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
     C = np.zeros((group.dim, group.dim)) if forced.friction is None else forced.friction.matrix
-    V, _ = _series.body_numbers(group, body.constraint_subspace, body.inertia_operator)
-    sizes = _series.direction_sizes(group, body.constraint_subspace, body.inertia_operator)
+    V, _, sizes = _series.body_numbers(group, body.constraint_subspace, body.inertia_operator)
     turns = group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
     friction = rows @ C @ rows.T / sizes[:, None]
     fastest = float(np.linalg.eigvals(V @ friction).real.max(initial=0.0))
@@ -225,7 +224,7 @@ def quadratic_under(forced: Forced) -> Quadratic:
     body, acting = forced.canonical, _linear_forces(forced)
     S, (k, m) = body.constraint_subspace, acting.levers.shape
     velocities, torques = np.eye(k + m + 1), np.zeros((k + m + 1,) * 3)
-    velocities[:k, :k], torques[:k, :k, :k] = _series.body_numbers(body.group, S, body.inertia_operator)
+    velocities[:k, :k], torques[:k, :k, :k], _ = _series.body_numbers(body.group, S, body.inertia_operator)
     torques[-1, :k, :k], torques[-1, k:-1, :k] = -acting.friction.T, acting.levers.T
     torques[:k, k:-1, k:-1] = np.kron(np.eye(len(acting.vectors)), acting.turns).swapaxes(-1, -2)
     return _series.body_equations(body.group, S, velocities, torques, (k, m, 1))

@@ -24,7 +24,7 @@ from nonholo.base.types import Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series, sparse_products
 from nonholo.orbit import looked_at, turned_near
-from nonholo.systems import AbstractSystem, displacement_units
+from nonholo.systems import AbstractSystem, direction_lengths, displacement_units
 
 PLANE = SE(2)
 Covectors = Float[np.ndarray, "K dim"]
@@ -171,7 +171,7 @@ def by_series(system: AbstractSystem, problem: Problem) -> Solved:
         unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(problem.pose)))
         f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
     else:
-        sizes = _own_sizes(system)
+        sizes = _own_numbers(system)[2]
         unit = power_of_two(sizes * f.velocities.dot(reduced_momentum / sizes))
         head = reduced_momentum / sizes / unit
     return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem, sizes=sizes)
@@ -214,32 +214,29 @@ def quadratic(system: AbstractSystem) -> Quadratic:
     group, S = system.group, system.constraint_subspace
     if system.is_spatial:
         return _space_equations(group, S, cast(np.ndarray, system.homogeneous_mass_tensor))
-    return body_equations(group, S, *body_numbers(group, S, system.inertia_operator))
+    return body_equations(group, S, *_own_numbers(system)[:2])
+
+
+@functools.lru_cache(maxsize=16)
+def _own_numbers(system: AbstractSystem) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return body_numbers(system.group, system.constraint_subspace, system.inertia_operator)
 
 
 def body_numbers(
     group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]
-) -> tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k k k"]]:
-    """Return V and the coefficients of products w_a w_b, a <= b, in the rates of momenta, which are in their units."""
+) -> tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k k k"], Float[np.ndarray, "... k"]]:
+    """Return V, the coefficients of products w_a w_b, a <= b, in the rates of momenta, and the units of momenta.
+
+    Units are the lengths of the rows, as powers of two; V and rates are in them.
+    """
     momenta = S @ inertia.swapaxes(-1, -2)
     torques = np.zeros((*inertia.shape[:-2], len(S), len(S), len(S)))
     for a, row in enumerate(S):
         torques[..., a, :, :] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
     upper = (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
-    sizes = direction_sizes(group, S, inertia)
+    sizes = np.exp2(np.round(np.log2(direction_lengths(S, displacement_units(group, inertia)))))
     torques = (torques + torques.swapaxes(-3, -2)) * upper / sizes[..., None, None, :]
-    return np.linalg.inv(S @ inertia @ S.T) * sizes[..., None, :], torques
-
-
-def direction_sizes(group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]) -> Any:
-    """Return lengths of rows in units of displacements, as powers of two: inverse units of velocities along them."""
-    lengths = np.linalg.norm(S / displacement_units(group, inertia)[..., None, :], axis=-1)
-    return np.exp2(np.round(np.log2(lengths)))
-
-
-@functools.lru_cache(maxsize=16)
-def _own_sizes(system: AbstractSystem) -> Float[np.ndarray, "k"]:
-    return direction_sizes(system.group, system.constraint_subspace, system.inertia_operator)
+    return np.linalg.inv(S @ inertia @ S.T) * sizes[..., None, :], torques, sizes
 
 
 def body_equations(
@@ -352,9 +349,7 @@ def flow_tangents(
     where: str, system: AbstractSystem, momenta: Float[np.ndarray, "K k"], time: Float[np.ndarray, "K"]
 ) -> Float[np.ndarray, "L k k"]:
     """Return the derivative of each momentum by the one before, for restricted momenta of a flow."""
-    k = system.rank
-    V, torques = body_numbers(system.group, system.constraint_subspace, system.inertia_operator)
-    sizes = _own_sizes(system)
+    k, (V, torques, sizes) = system.rank, _own_numbers(system)
     slopes = np.einsum("abn,bc->acn", torques + torques.swapaxes(0, 1), V)
     a, c, n = np.nonzero(slopes)
     column = np.arange(k)[:, None]

@@ -33,18 +33,18 @@ def has_series(system: AbstractSystem, span: float) -> bool:
 
 def _equations(
     system: AbstractSystem, inertias: Float[np.ndarray, "m dim dim"]
-) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]]:
-    """Return the equations of members, and their velocities and factors; those of one body are known."""
+) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"], Float[np.ndarray, "m k"]]:
+    """Return the equations of members, and their velocities, factors and units of momenta; those of one are known."""
+    group, S = system.group, system.canonical.constraint_subspace
+    velocities, torques, sizes = _series.body_numbers(group, S, inertias)
     if len(inertias) == 1:
         f = _series.quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
-        return f, f.velocities[None], f.factors
-    system = system.canonical
-    group, S = system.group, system.constraint_subspace
-    velocities, torques = _series.body_numbers(group, S, inertias)
+        return f, f.velocities[None], f.factors, sizes
     is_nonzero = (torques != 0).any(axis=0)
     f = _series.body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
     own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(is_nonzero, -1, 0)]  # row by row of the equations
-    return f, velocities, np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
+    factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
+    return f, velocities, factors, sizes
 
 
 def members_by_series(
@@ -68,8 +68,7 @@ def members_by_series(
         stop: Ends the work when it becomes true.
     """
     group, k = system.group, momenta.shape[1]
-    f, velocities, factors = _equations(system, inertias)
-    sizes = _series.direction_sizes(group, system.canonical.constraint_subspace, inertias)
+    f, velocities, factors, sizes = _equations(system, inertias)
     if system.forces is None:
         head = momenta / sizes
         units = _series.power_of_two((velocities @ head[..., None])[..., 0] * sizes)
@@ -98,14 +97,12 @@ def solver_of(system: System, method: str | None, begins: float, *, reconstruct:
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
         return functools.partial(under_forces, system.forces, begins), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None
-    return functools.partial(_method_solver(method, alone=alone), system.canonical), not alone
+    return functools.partial(momenta_by_series if alone else _solver_named(method), system.canonical), not alone
 
 
-def _method_solver(method: str | None, *, alone: bool) -> Callable[..., Solved]:
-    if method is None:
-        return momenta_by_series if alone else _series.by_series
-    if method == "closed_form":
-        return closed_form
+def _solver_named(method: str | None) -> Callable[..., Solved]:
+    if method != "diffrax":
+        return _series.by_series if method is None else closed_form
     with needs("jax", "flow(method='diffrax')"):
         from nonholo.continuous._integration_jax import integrate_by_diffrax
 

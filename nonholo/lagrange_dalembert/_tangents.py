@@ -21,7 +21,6 @@ from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
-from nonholo.systems import alike_in_time
 
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
 
@@ -68,10 +67,24 @@ def slopes(
     return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
-def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, "L d d"]:
-    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes.
+def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
+    maps, rows, units, _ = changes(orbit)
+    return among_admissible(maps, rows, np.ones_like(units))
 
-    Its own units are those in which all velocities have the same kinetic energy at the first state, and a time.
+
+def among_admissible(
+    maps: Float[np.ndarray, "L d d"], rows: Float[np.ndarray, "K c d"], units: Float[np.ndarray, "d"]
+) -> Float[np.ndarray, "L f f"]:
+    """Return derivatives in bases, orthonormal in units, of the changes on which the rows vanish."""
+    bases = np.linalg.svd(rows * units)[2][:, rows.shape[1] :].swapaxes(1, 2)
+    return bases[1:].swapaxes(1, 2) @ (maps * (units / units[:, None])) @ bases[:-1]
+
+
+def changes(orbit: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Return the derivative of each state by the one before, constraints of changes, units and how many are of places.
+
+    In the units all velocities have the same kinetic energy at the first state.
     """
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
@@ -91,14 +104,9 @@ def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, 
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time, and places that it prescribes
     matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
     maps, rows = maps[:, matters][:, :, matters], rows[..., matters]
-    if in_own_units and len(maps):
-        unit = units(system, x[0], v[0])
-        sizes = np.concatenate([unit, np.ones(int(system.is_driven)), unit])[matters]
-        maps, rows = maps * (sizes / sizes[:, None]), rows * sizes
-        sizes = alike_in_time(maps, np.searchsorted(matters, n + system.is_driven), np.ptp(time))
-        maps, rows = maps * (sizes / sizes[:, None]), rows * sizes
-    bases = np.linalg.svd(rows)[2][:, rows.shape[1] :].swapaxes(1, 2)
-    return bases[1:].swapaxes(1, 2) @ maps @ bases[:-1]
+    unit = units(system, x[0], v[0])
+    sizes = np.concatenate([unit, np.ones(int(system.is_driven)), unit])[matters]
+    return maps, rows, sizes, int(np.searchsorted(matters, n + system.is_driven))
 
 
 def _beside(system: Any, h: Array | None, x: Array, v: Array, xis: Array, ws: Array) -> tuple[Array, Array]:
@@ -197,7 +205,8 @@ def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
     def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:
         (x, v, force), still = row, jnp.zeros(2 * n)
         A, B = jax.jacfwd(after, (0, 1))(still, force, x, v)
-        across = jax.jacfwd(limits)(still, x, v)
-        return A - A @ jnp.linalg.pinv(across) @ across, B
+        sizes = jnp.outer(jnp.array([h, 1.0]), _units(system, x, v)).ravel()  # so that units do not matter
+        across = jax.jacfwd(limits)(still, x, v) * sizes
+        return A - (A * sizes) @ jnp.linalg.pinv(across) @ (across / sizes), B
 
     return jax.lax.map(one, rows)

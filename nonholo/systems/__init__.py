@@ -26,6 +26,7 @@ from nonholo.systems._mass import (
     ImpossibleBodyWarning,
     alike_in_time,
     checked_group,
+    direction_lengths,
     displacement_units,
     extent_of,
     group_mass_tensor,

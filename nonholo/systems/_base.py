@@ -79,11 +79,6 @@ class AbstractSystem(Keeper, abc.ABC):
         return displacement_units(self.group, np.asarray(self.inertia_operator))
 
     @property
-    def direction_lengths(self) -> Float[np.ndarray, "k"]:
-        """Lengths of the rows of the constraint subspace in the units of displacements, to which momenta are alike."""
-        return np.linalg.norm(self.constraint_subspace / self.displacement_units, axis=1)
-
-    @property
     @abc.abstractmethod
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """Rows span the subspace of the constraint; k runs from 0 to dim."""

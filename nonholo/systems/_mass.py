@@ -115,14 +115,17 @@ def reach_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) -> 
     return np.minimum(1.0, units * extent_of(numbers, units))
 
 
-def alike_in_time(maps: Float[np.ndarray, "L d d"], places: int, duration: float) -> Float[np.ndarray, "d"]:
-    """Return sizes of places and velocities in a time in which tangent maps carry the one to the other alike.
+def alike_in_time(
+    maps: Float[np.ndarray, "L d d"], units: Float[np.ndarray, "d"], places: int, duration: float
+) -> Float[np.ndarray, "d"]:
+    """Return units of places and velocities for a time in which tangent maps carry the one to the other alike.
 
     It is the duration where they do not, as in free motions, which have no time scale.
     """
+    maps = maps * (units / units[:, None])
     forth, back = np.linalg.norm(maps[:, :places, places:]), np.linalg.norm(maps[:, places:, :places])
     time = np.sqrt(forth / back) if forth * back > _SEEN * len(maps) else duration or 1.0
-    return np.append(np.full(places, time), np.ones(maps.shape[-1] - places))
+    return units * np.append(np.full(places, time), np.ones(len(units) - places))
 
 
 def displacement_units(group: AbstractMatrixGroup, inertia: Float[Array, "... dim dim"]) -> Float[Array, "... dim"]:
@@ -146,6 +149,11 @@ def displacement_units(group: AbstractMatrixGroup, inertia: Float[Array, "... di
         return xp.ones_like(energies)
     length = xp.sqrt(xp.mean(energies[..., ~slides], axis=-1) / xp.mean(energies[..., slides], axis=-1))
     return xp.where(xp.asarray(slides), xp.where(length > 0, length, 1.0)[..., None], 1.0)
+
+
+def direction_lengths(rows: Float[np.ndarray, "k dim"], units: Float[np.ndarray, "... dim"]) -> Any:
+    """Return lengths of rows in units of displacements: momenta are alike to them, velocities to their inverse."""
+    return np.linalg.norm(rows / units[..., None, :], axis=-1)
 
 
 def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tensor) -> Float[Array, "... k k"]:

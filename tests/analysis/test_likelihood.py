@@ -10,10 +10,10 @@ from scipy import stats
 from scipy.optimize import minimize, root_scalar
 
 from nonholo.analysis.inverse import Fit
-from nonholo.analysis.inverse._likelihood import Problem, Ranges, Search, Solution, bent
+from nonholo.analysis.inverse._likelihood import Problem, Search, Solution, bent
 from nonholo.analysis.inverse._profile import Minimum, profile_of
 
-FREE = Ranges(np.full(2, -np.inf), np.full(2, np.inf))
+FREE = np.full(2, -np.inf), np.full(2, np.inf)
 
 
 def _search(y: np.ndarray, few: int, known: tuple[float, ...], loss: str = "linear") -> tuple[Search, np.ndarray]:

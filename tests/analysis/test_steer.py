@@ -1,6 +1,7 @@
 """Controls to goals: poses and velocities met, least effort by hand, bounds, what cannot be reached."""
 
 import functools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,10 +53,38 @@ def _starts(count: int) -> dict[str, np.ndarray]:
 
 def test_a_way_of_least_effort_counts_more_than_a_smaller_miss(monkeypatch: pytest.MonkeyPatch) -> None:
     """A start that comes nearer to the goal, at no minimum of the cost, does not hide a later one at a minimum."""
-    ends = iter([([[2.0]], [1e-12], [1.0]), ([[1.0]], [1e-10], [0.0])])
+    ends = iter([([[2.0]], [[1e-12]], [1.0]), ([[1.0]], [[1e-10]], [0.0])])
     monkeypatch.setattr(_shooting, "least_effort", lambda *_: tuple(map(np.array, next(ends))))
-    forces, gap, is_least = _shooting.best(lambda f, _: (f, f), np.ones(1), 1, (-np.ones(1), np.ones(1)))
-    assert (forces.item(), gap.item(), is_least.item()) == (1.0, 1e-10, True)
+    forces, missed, is_least = _shooting.best(lambda f, _: (f, f), np.ones((1, 1)), (-np.ones(1), np.ones(1)))
+    assert (forces.item(), missed.item(), is_least.item()) == (1.0, 1e-10, True)
+
+
+def test_members_begin_where_they_do_without_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A member begins each attempt at the same forces whether another one is met at once or never."""
+
+    def begins(other: float) -> list[float]:
+        firsts = []
+
+        def attempt(_: Any, f: np.ndarray, __: Any) -> tuple[np.ndarray, ...]:
+            firsts.append(f[-1, 0])
+            return f, np.array([[other], [1.0]])[-len(f) :], np.zeros(len(f))
+
+        monkeypatch.setattr(_shooting, "least_effort", attempt)
+        _shooting.best(lambda f, _: (f, f), np.ones((2, 1)), (-np.ones(1), np.ones(1)))
+        return firsts
+
+    assert begins(0.0) == begins(1.0)
+
+
+@pytest.mark.profile("problems", instead="test_bounds_hold")
+@pytest.mark.parametrize("length", [2.0**-10, 2.0**10])
+def test_goals_are_met_in_any_unit_of_length(length: float) -> None:
+    """Where thrusts cost a million times what torques do, or the inverse, a sleigh still comes to its place at rest."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, length**2, 0.2 * length), 0.1)
+    place = ASIDE * [[1, 1, length], [1, 1, length], [1, 1, 1]]
+    found = nh.steer(sleigh, {}, {"configuration": place, **REST}, steps=40)
+    assert found.outcome in ("converged", "not least")
+    assert found.missed < 1e-8 * max(1.0, length)
 
 
 @pytest.mark.profile("routes", instead="test_bounds_hold")

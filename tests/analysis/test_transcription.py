@@ -90,11 +90,36 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     np.testing.assert_allclose(whole @ v, bent, rtol=0, atol=1e-9 * np.abs(bent).max())
 
 
+@pytest.mark.parametrize("units", [(2.0**18, 1.0), (2.0**-18, 1.0), (1.0, 2.0**-10)])
+def test_controls_do_not_depend_on_units_of_mass_and_time(units: tuple[float, float]) -> None:
+    """IPOPT finds the same forces for a top and for a spring between two masses, to rounding."""
+    tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+    turned = {"configuration": nh.SO(3).exp([0.4, 0.2, 0.1]), "restricted_velocity": (0.0, 0.0)}
+    beside = {"configuration": (1.0, 0.5), "body_velocity": (0.0, 0.0)}
+    pair = nh.LagrangeDAlembert(
+        lambda q, v, p: p["mass"] * (v[0] ** 2 + v[1] ** 2 / 2) / 2 - p["spring"] * (q[0] - q[1]) ** 2 / 2,
+        None,
+        dimension=2,
+        parameters={"mass": 1.0, "spring": 0.5},
+    )
+
+    def forces(mass: float, time: float) -> list[np.ndarray]:
+        system = pair.with_parameters(mass=mass, spring=0.5 * mass / time**2)
+        asked = (nh.SuslovTop(tensor * mass), {}, turned), (system, {"configuration": (0.0, 0.0)}, beside)
+        steered = [
+            nh.steer(nh.discretize(x, 0.1 * time), start, to, steps=20, method="ipopt") for x, start, to in asked
+        ]
+        assert [each.outcome for each in steered] == ["converged", "converged"]
+        return [each.controls * time**2 / mass for each in steered]
+
+    for found, expected in zip(forces(*units), forces(1.0, 1.0), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
 def test_only_windows_of_unknowns_are_coupled() -> None:
     """The matrices are banded: equations of a step see it and the state before, and each step has as many entries."""
     program = _program(SLEIGH, STEPS)
-    places, (count, ends) = program.slope_places, program.shape
-    rows, columns = places.rows, np.repeat(np.arange(program.unknowns), np.diff(places.columns))
+    (rows, columns), (count, ends) = program.slope_places.pattern.nonzero(), program.shape
     step = rows // count
     inside = step < STEPS
     assert (columns < program.width * np.minimum(step + 1, STEPS)).all()

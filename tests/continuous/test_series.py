@@ -48,7 +48,7 @@ def test_quadratic_equations_are_the_vector_field(name: str, compact: bool, monk
     r, g = rng.normal(size=k), group.random(rng)
     f, expected = _series.quadratic.__wrapped__(system), nh.vector_field(system)(0.0, np.concatenate([r, g.ravel()]))
     velocity = system.restricted_velocity(r, g) @ system.constraint_subspace
-    sizes = _series._own_sizes(system)
+    sizes = _series._own_numbers(system)[2]
     head, rates, pose, moved = r / sizes, expected[:k] / sizes, g.ravel(), expected[k:]
     if system.is_spatial:
         tensor, rate = system.homogeneous_mass_tensor, moved.reshape(g.shape)

@@ -235,7 +235,7 @@ def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
         low[at], high[at] = (x if free else number(where, x) for x, free in zip(ends, infinite, strict=True))
         if not ((low < numbers) & (numbers < high))[at].all():
             raise error(where, "have the guess between them", f"{name} = {numbers[at]} of {ends}", remedy)
-    return Ranges(low, high)
+    return low, high
 
 
 def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:

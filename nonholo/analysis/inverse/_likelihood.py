@@ -176,11 +176,8 @@ _MEDIAN = 0.6744897501960817  # of the size of normal numbers
 _EXACT = 1e-10  # of the largest measured number of a kind: less noise than that is rounding
 
 
-class Ranges(NamedTuple):
-    """Bounds of parameters, infinite where there are none; between 0 and infinity logarithms are searched."""
-
-    low: np.ndarray
-    high: np.ndarray
+Ranges = tuple[np.ndarray, np.ndarray]
+"""Bounds of parameters, infinite where there are none; between 0 and infinity logarithms are searched."""
 
 
 class Solution(NamedTuple):
@@ -228,7 +225,7 @@ class Search(NamedTuple):
     def least(self, point: np.ndarray, noise: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the point where the loss is least under noise levels."""
         scale, starts = noise[self.problem.kind_of], np.zeros(len(point) - self.problem.count)
-        low, high = np.append(self.ranges.low, starts - np.inf), np.append(self.ranges.high, starts + np.inf)
+        low, high = np.append(self.ranges[0], starts - np.inf), np.append(self.ranges[1], starts + np.inf)
         is_log = (low == 0) & np.isposinf(high)  # positive numbers
 
         def rows(x: np.ndarray) -> np.ndarray:

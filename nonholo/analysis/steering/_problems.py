@@ -248,12 +248,15 @@ def coordinate_problem(
     if way.outline.shape[-1]:
         way.check("start", _arguments.points_at(system, q, way.outline))
     path, forces = _coordinate_guess(system, (q, last[:size]), way, steps)
+    unit, duration = lagrange_dalembert.tangents.units(system.plain, x, v), steps * float(nodes.time_step)
+    far = np.abs([system.places.departure(q, last[:size]), duration * v] / unit).max() or 1.0  # in one kinetic energy
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
-        bent = system.places.beside(path, spread * bow * rng.normal(size=n))
-        return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
+        bent = system.places.beside(path, spread * far * unit * bow * rng.normal(size=n))
+        noise = spread * far / unit / duration**2 * rng.normal(size=(steps, n))
+        return _coordinate_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
         by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven

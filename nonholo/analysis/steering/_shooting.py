@@ -6,6 +6,7 @@ with what is left; conjugate gradients then move along the goal, with second der
 """
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -20,6 +21,7 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, compile_double, in_double
 from nonholo.simulation.traced import rollout
+from nonholo.systems import direction_lengths
 
 
 def goal_gaps(
@@ -110,18 +112,17 @@ Gaps = Callable[[Float[np.ndarray, "m n"], np.ndarray], tuple[Float[np.ndarray, 
 
 def least_effort(
     gaps: Gaps, f: Float[np.ndarray, "M n"], limits: Limits
-) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M"], Float[np.ndarray, "M"]]:
-    """Return forces near given ones, their largest miss, and their relative excess over the least effort."""
-    f, going = np.clip(f, *limits), np.arange(len(f))
-    c, J = gaps(f, going)
-    gap, rest, penalty = np.abs(c).max(axis=1), np.full(len(f), np.inf), np.zeros(len(f))
-    going = going[np.isfinite(gap)]
+) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M c"], Float[np.ndarray, "M"]]:
+    """Return forces near given ones, what they miss, infinite where none, and their excess over the least effort."""
+    f = np.clip(f, *limits)
+    c, J = gaps(f, np.arange(len(f)))
+    going, rest, penalty = np.flatnonzero(np.isfinite(c).all(axis=1)), np.full(len(f), np.inf), np.zeros(len(f))
     first = np.linalg.norm(f, axis=1)
     for _ in range(_ROUNDS):
         length = np.maximum(np.linalg.norm(f[going], axis=1), first[going] + _LEAST)
         plane, jump, weights = _plane((f[going], c[going], J[going]), limits)
         rest[going] = np.linalg.norm(plane.along(f[going]) + jump, axis=1) / length
-        on = (gap[going] > _MET) | (rest[going] > _LEVEL)
+        on = (np.abs(c[going]).max(axis=1) > _MET) | (rest[going] > _LEVEL)
         going, plane, jump, weights, length = going[on], plane[on], jump[on], weights[on], length[on]
         if not len(going):
             break
@@ -131,9 +132,8 @@ def least_effort(
         penalty[going] = np.maximum(penalty[going], 2 * np.abs(weights).max(axis=1))
         point = f[going], c[going], J[going]
         (f[going], c[going], J[going]), fell = _shorten(gaps, point, step, penalty[going], limits, going)
-        gap[going] = np.abs(c[going]).max(axis=1)
         going = going[fell]
-    return f, gap, rest
+    return f, np.where(np.isfinite(c), c, np.inf), rest
 
 
 def _plane(point: Point, limits: Limits) -> tuple["_Plane", np.ndarray, np.ndarray]:
@@ -190,10 +190,6 @@ def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
     return (A @ x[..., None])[..., 0]
 
 
-def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return (x * y).sum(axis=1)[:, None]
-
-
 def _along(
     gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray, members: np.ndarray
 ) -> Float[np.ndarray, "m n"]:
@@ -208,13 +204,13 @@ def _along(
         size = (_OFFSET * length[at] / np.linalg.norm(p[at], axis=1))[:, None]
         change = (gaps(f[at] + size * p[at], members[at])[1] - J[at]) * weights[at, :, None]
         Hp = plane[at].along(p[at] - np.nan_to_num(change.sum(axis=1)) / size)
-        good = (_dot(p[at], Hp) > _BENT * _dot(p[at], p[at]))[:, 0]
+        good = np.vecdot(p[at], Hp) > _BENT * np.vecdot(p[at], p[at])
         total[at[~good]] += (count == 0) * p[at[~good]]
-        at, Hp, square = at[good], Hp[good], _dot(r[at], r[at])[good]
-        size = square / _dot(p[at], Hp)
+        at, Hp, square = at[good], Hp[good], np.vecdot(r[at], r[at])[good, None]
+        size = square / np.vecdot(p[at], Hp)[:, None]
         total[at] += size * p[at]
         r[at] -= size * Hp
-        p[at] = r[at] + _dot(r[at], r[at]) / square * p[at]
+        p[at] = r[at] + np.vecdot(r[at], r[at])[:, None] / square * p[at]
     return total
 
 
@@ -225,7 +221,7 @@ def _shorten(
     now, fell = tuple(x.copy() for x in point), np.zeros(len(step), dtype=bool)
 
     def merit(at: np.ndarray, f: np.ndarray, c: np.ndarray) -> np.ndarray:
-        return _dot(f, f)[:, 0] / 2 + penalty[at] * np.abs(c).sum(axis=1)
+        return np.vecdot(f, f) / 2 + penalty[at] * np.abs(c).sum(axis=1)
 
     for count in range(_HALVINGS + 1):
         at = np.flatnonzero(~fell)
@@ -245,26 +241,37 @@ _GRADIENT = 1e-4  # of the gradient at a minimum
 
 
 def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarray, ...]:
-    """Return the forces of members, (members, steps k), what they miss, whether it is met, and with least effort."""
-    k, block = discrete.system.rank, min(BLOCK, len(ends[0]))
-    steps = len(limits[0]) // k
-    units = _units(discrete, ends, steps)
+    """Return the forces of members, (members, steps, k), what they miss, and outcomes.
 
-    def gaps(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    Where torques cost much more than forces, or much less, the least effort may not be near: what meets the goal then
+    is least in the units of the body.
+    """
+    system, everyone, block = discrete.system, np.arange(len(ends[0])), min(BLOCK, len(ends[0]))
+    steps = len(limits[0]) // system.rank
+    lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
+    units = system.displacement_units, 1 / lengths / (steps * float(discrete.time_step))
+    units = np.concatenate([part for part, end in zip(units, ends[2:], strict=True) if end is not None])
+
+    def gaps(members: np.ndarray, unit: Any, f: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
-        c, J = goal_gaps(discrete, forces.reshape(-1, steps, k), members_of(ends, at), block)
-        return c / units, J / units[:, None]
+        their_ends = jax.tree.map(lambda x: x[members[at]], ends)
+        c, J = goal_gaps(discrete, (f * unit).reshape(len(f), steps, -1), their_ends, block)
+        return c / units, J * unit / units[:, None]
 
-    forces, gap, is_least = best(gaps, sizes(discrete, steps, ends), len(ends[0]), limits)
-    miss = np.abs(gaps(forces, np.arange(len(forces)))[0] * units).max(axis=1)
-    return forces, np.where(np.isfinite(gap), miss, np.inf), gap < TOLERANCE, is_least
+    size, unit = sizes(discrete, steps, ends), np.tile(np.exp2(np.round(np.log2(lengths))), steps)
+    forces, misses, is_least = best(functools.partial(gaps, everyone, 1.0), size, limits)
+    failures = np.flatnonzero(_largest(misses) >= TOLERANCE)
+    if len(failures) and (unit != unit[0]).any():
+        own = functools.partial(gaps, failures, unit)
+        others, left, _ = best(own, size[failures] / unit, (limits[0] / unit, limits[1] / unit))
+        is_nearer = _largest(left) < _largest(misses[failures])
+        forces[failures[is_nearer]], misses[failures[is_nearer]] = others[is_nearer] * unit, left[is_nearer]
+    words = np.where(is_least, "converged", np.where(_largest(misses) < TOLERANCE, "not least", "not found"))
+    return forces.reshape(len(forces), steps, -1), _largest(misses * units), words
 
 
-def _units(discrete: Discretization, ends: Ends, steps: int) -> np.ndarray:
-    """Return units of what is missed: radians and the body's length, for velocities in the time of the motion."""
-    units, duration = discrete.system.displacement_units, steps * float(discrete.time_step)
-    speeds = 1 / discrete.system.direction_lengths / duration
-    return np.concatenate([part for part, end in zip((units, speeds), ends[2:], strict=True) if end is not None])
+def _largest(misses: Float[np.ndarray, "m c"]) -> Float[np.ndarray, "m"]:
+    return np.abs(misses).max(axis=1)
 
 
 def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
@@ -278,30 +285,26 @@ def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
         n = system.group.point_size
         way = np.linalg.norm(to_pose[..., :n, n] - g[..., :n, n], axis=-1, keepdims=True) / 2
         units[..., -n:] = np.maximum(units[..., -n:], way)
-    along = system.constrained_inertia.diagonal() / np.linalg.norm(
-        system.constraint_subspace / units[..., None, :], axis=-1
-    )
+    along = system.constrained_inertia.diagonal() / direction_lengths(system.constraint_subspace, units)
     return np.tile(np.sqrt(steps) * along / (steps * float(discrete.time_step)) ** 2, steps)
 
 
-def best(gaps: Gaps, size: np.ndarray, members: int, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least."""
-    rng, left, size = np.random.default_rng(0), np.arange(members), np.broadcast_to(size, (members, size.shape[-1]))
-    forces, gap, is_least = np.zeros(size.shape), np.full(members, np.inf), np.zeros(members, dtype=bool)
+def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least.
+
+    Each member has a separate random stream, so that no other one changes where it begins.
+    """
+    left, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
+    ends: Any = None
     for spread in SPREAD:
-        first = spread * size[left] * rng.normal(size=size[left].shape)
-        there = left
-        near, miss, rest = least_effort(lambda f, at, there=there: gaps(f, there[at]), first, limits)
-        least = (miss < TOLERANCE) & (rest < _GRADIENT)
-        better = least | (miss < gap[left])
-        now = left[better]
-        forces[now], gap[now], is_least[now] = near[better], miss[better], least[better]
-        left = left[~is_least[left]]
+        first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
+        near, misses, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
+        least = ((gap := _largest(misses)) < TOLERANCE) & (rest < _GRADIENT)
+        ends = ends or (np.zeros_like(size), np.full_like(misses, np.inf), np.zeros_like(least))
+        better = least | (gap < _largest(ends[1][left]))
+        for whole, part in zip(ends, (near, misses, least), strict=True):
+            whole[left[better]] = part[better]
+        left = np.flatnonzero(~ends[2])
         if not len(left):
             break
-    return forces, gap, is_least
-
-
-def members_of(parts: Any, at: Any) -> Any:
-    """Return members of arrays."""
-    return parts if parts is None else parts[at] if hasattr(parts, "shape") else tuple(members_of(x, at) for x in parts)
+    return ends

@@ -213,9 +213,7 @@ def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[
     """Return forces along the rows, what is missed, and outcomes of members, all at once."""
     with needs("jax", "steer"):
         from nonholo.analysis.steering._shooting import shot
-    forces, miss, is_met, is_least = shot(discrete, ends, limits)
-    outcome = np.where(is_least, "converged", np.where(is_met, "not least", "not found"))
-    return forces.reshape(len(miss), -1, discrete.system.rank), miss, outcome
+    return shot(discrete, ends, limits)
 
 
 def _by_ipopt(

@@ -6,7 +6,7 @@ A sparse program by IPOPT, from the wheel of casadi, which calls back for values
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import casadi
 import equinox
@@ -75,11 +75,6 @@ def _values(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
 
 
 @equinox.filter_jit
-def _goal_gap(steps: Steps, last: Array) -> Array:
-    return steps.nodes.goal_gap(last)
-
-
-@equinox.filter_jit
 def _slopes(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
     return jax.vmap(jax.jacfwd(steps.conditions))(windows, rows), jax.jacfwd(steps.nodes.goal_gap)(last)
 
@@ -145,9 +140,20 @@ class Program:
         values, end = self._call(_values, u)
         return np.concatenate([values.ravel(), end])
 
+    def units(self, u: Float[np.ndarray, "n"]) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "c"]]:
+        """Return units of unknowns, alike for all steps, and of conditions, as powers of two.
+
+        They are the largest numbers in u; where there are none, those that change conditions by as much as the others.
+        """
+        J = abs(cast(Any, self.slopes(u)))
+        unit = np.tile(np.abs(u.reshape(len(self.rows), -1)).max(axis=0), len(self.rows))
+        others = (J / _power((J * unit).max(axis=1).toarray())[:, None]).max(axis=0).toarray()
+        unit = _power(np.where(unit > 0, unit, 1 / _power(others)))
+        return unit, _power((J * unit).max(axis=1).toarray())
+
     def goal_gap(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
         """Return what vanishes at the goal, of a last state."""
-        return in_double(_goal_gap, self.steps, state)
+        return in_double(self.steps.nodes.goal_gap, state)
 
     def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
         """Return the effort and its derivative."""
@@ -158,45 +164,37 @@ class Program:
 
     def slopes(self, u: Float[np.ndarray, "n"]) -> sparse.csc_array:
         """Return the derivatives of the conditions."""
-        return self._laid(self.slope_places, self._call(_slopes, u))
+        return self.slope_places.matrix(self._call(_slopes, u))
 
     def curvatures(self, u: Float[np.ndarray, "n"], weights: np.ndarray, weight: float) -> sparse.csc_array:
         """Return the upper triangle of the second derivatives of a weighted sum of cost and conditions."""
         ends = self.shape[1]
         both = weights[: len(weights) - ends].reshape(len(self.rows), -1), weights[len(weights) - ends :]
-        return self._laid(self.curvature_places, self._call(_curvatures, u, both, np.float64(weight)))
+        return self.curvature_places.matrix(self._call(_curvatures, u, both, np.float64(weight)))
 
     def _call(self, function: Any, u: np.ndarray, *more: Any) -> Any:
         whole = np.concatenate([self.first, u])
         windows, last = whole[self.windows + len(self.first)], whole[-len(self.first) :]
         return in_double(function, self.steps, windows, self.rows, last, *more)
 
-    def _laid(self, places: "_Places", entries: tuple[np.ndarray, np.ndarray]) -> sparse.csc_array:
-        values = np.concatenate([each.ravel() for each in entries])[places.at]
-        data = np.bincount(places.entry, values, minlength=len(places.rows))
-        return sparse.csc_array((data, places.rows, places.columns), shape=places.shape)
-
     @functools.cached_property
     def slope_places(self) -> "_Places":
         """Where the derivatives of the conditions stand."""
-        (count, ends), steps = self.shape, len(self.rows)
+        (count, ends), steps, window = self.shape, len(self.rows), self.windows
         row = np.arange(steps * count).reshape(steps, count, 1)
         end = np.arange(steps * count, steps * count + ends)[:, None]
-        places, shape = ((row, self.windows[:, None]), (end, self._last)), (steps * count + ends, self.unknowns)
-        return _Places.of(*places, self._pattern(_slopes, ()), shape)
+        places = (row, window[:, None]), (end, window[-1, -len(self.first) :])
+        return _Places.of(*places, self._pattern(_slopes, ()), (steps * count + ends, self.unknowns))
 
     @functools.cached_property
     def curvature_places(self) -> "_Places":
         """Where the second derivatives stand."""
         rng, (count, ends) = np.random.default_rng(1), self.shape
         weights = rng.normal(size=(len(self.rows), count)), rng.normal(size=ends)
-        pattern, window, last = self._pattern(_curvatures, (weights, np.float64(1.0))), self.windows, self._last
+        pattern, window = self._pattern(_curvatures, (weights, np.float64(1.0))), self.windows
+        last = window[-1, -len(self.first) :]
         places = (window[:, :, None], window[:, None]), (last[:, None], last)
         return _Places.of(*places, pattern, (self.unknowns, self.unknowns), upper=True)
-
-    @property
-    def _last(self) -> np.ndarray:
-        return self.windows[-1, -len(self.first) :]
 
     def _pattern(self, function: Any, more: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Return which entries of the derivatives of a step, and at the end, do not vanish everywhere."""
@@ -207,32 +205,39 @@ class Program:
         return np.broadcast_to(step, samples[0][0].shape), end
 
 
+def _power(sizes: np.ndarray) -> np.ndarray:
+    """Return the nearest powers of two, 1 of nothing."""
+    return np.exp2(np.round(np.log2(np.where(sizes > 0, sizes, 1.0))))
+
+
 class _Places(NamedTuple):
-    """Where the entries of the derivatives of steps stand in a sparse matrix, by columns.
+    """Where the entries of the derivatives of steps stand in a sparse matrix.
 
     Attributes:
         at: Indices of the entries that are laid out.
-        entry: The entry of the matrix that each of them is added to.
-        rows: Of the entries of the matrix.
-        columns: Where columns begin.
+        places: Their rows and columns.
         shape: Of the matrix.
     """
 
     at: np.ndarray
-    entry: np.ndarray
-    rows: np.ndarray
-    columns: np.ndarray
+    places: tuple[np.ndarray, np.ndarray]
     shape: tuple[int, int]
 
     @classmethod
     def of(cls, steps: Any, end: Any, pattern: Any, shape: tuple[int, int], upper: bool = False) -> "_Places":
         both = [np.broadcast_arrays(*places, mask) for places, mask in zip((steps, end), pattern, strict=True)]
         row, column, mask = (np.concatenate([part[i].ravel() for part in both]) for i in range(3))
-        is_inside = mask & (column >= 0) & (row >= 0)
-        at = np.flatnonzero(is_inside & (row <= column) if upper else is_inside)
-        keys, entry = np.unique(column[at] * shape[0] + row[at], return_inverse=True)
-        begins = np.searchsorted(keys, np.arange(shape[1] + 1) * shape[0])
-        return cls(at, entry, keys % shape[0], begins, shape)
+        at = np.flatnonzero(mask & (column >= 0) & (row >= 0) & ((row <= column) | (not upper)))
+        return cls(at, (row[at], column[at]), shape)
+
+    def matrix(self, entries: tuple[np.ndarray, np.ndarray]) -> sparse.csc_array:
+        """Return the matrix of entries, with those that stand at one place added."""
+        return sparse.csc_array((np.concatenate([each.ravel() for each in entries])[self.at], self.places), self.shape)
+
+    @property
+    def pattern(self) -> sparse.csc_array:
+        """A matrix that has the same places."""
+        return sparse.csc_array((np.ones(len(self.at), dtype=bool), self.places), self.shape)
 
 
 _SPREADS = (0.03, 0.3, 1.0, 2.0)  # of random bends of the first guess, in turn
@@ -274,8 +279,9 @@ class Problem(NamedTuple):
 def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, str]:
     """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
     rng, searches = np.random.default_rng(0), []
+    units = problem.program.units(problem.guess(np.random.default_rng(0), 1.0))
     for spread in _SPREADS:
-        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds)
+        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds, units)
         forces = problem.program.split(unknowns)[1]
         gap = problem.gap_of(forces)
         searches.append((gap, forces, outcome_of(status, gap)))
@@ -296,32 +302,44 @@ def outcome_of(status: str, gap: float) -> str:
 def bounds_of(program: Program, limits: tuple[np.ndarray, np.ndarray], pins: dict[int, dict[int, Any]]) -> Any:
     """Return bounds of all unknowns: those of forces, and of numbers of states that are fixed after a step."""
     inner, forces, states = (program.steps.nodes.sizes[i] for i in (1, 2, 0))
-    both = []
-    for limit, free in zip(limits, (-np.inf, np.inf), strict=True):
-        each = np.full((len(program.rows), inner + forces + states), free)
-        each[:, inner : inner + forces] = limit.reshape(-1, forces)
-        for step, numbers in pins.items():
-            each[step - 1, [inner + forces + at for at in numbers]] = list(numbers.values())
-        both.append(each.ravel())
-    return tuple(both)
+    both = np.full((2, len(program.rows), inner + forces + states), [[[-np.inf]], [[np.inf]]])
+    both[..., inner : inner + forces] = np.reshape(limits, (2, -1, forces))
+    for step, numbers in pins.items():
+        both[:, step - 1, [inner + forces + at for at in numbers]] = list(numbers.values())
+    return both.reshape(2, -1)
 
 
-def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits) -> tuple[np.ndarray, str]:
-    """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
+def minimize(
+    program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, units: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, str]:
+    """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess.
+
+    IPOPT sees all of them in units.
+    """
+    (unit, rows), (least, most) = units, program.limits
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
-    conditions = casadi.Sparsity.dense(len(program.limits[0]))
-    slopes, curvatures = map(_sparsity, (program.slope_places, program.curvature_places))
+    conditions = casadi.Sparsity.dense(len(rows))
+    patterns: Any = program.slope_places.pattern, program.curvature_places.pattern
+    slopes, curvatures = (
+        casadi.Sparsity(each.shape[0], each.shape[1], each.indptr.tolist(), each.indices.tolist()) for each in patterns
+    )
+    scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
+    effort = max(program.cost(unit)[1] * unit)
 
-    def slope_values(u: np.ndarray, _: Any) -> tuple[Any, ...]:
-        return program.conditions(u), program.slopes(u).data
+    def cost(x: np.ndarray) -> tuple[Any, ...]:
+        value, slope = program.cost(x * unit)
+        return value / effort, slope * unit / effort
 
-    def curvature_values(u: np.ndarray, _: Any, weight: np.ndarray, weights: np.ndarray) -> tuple[Any, ...]:
-        return (program.curvatures(u, weights, weight[0]).data,)
+    def slope_values(x: np.ndarray, _: Any) -> tuple[Any, ...]:
+        return program.conditions(x * unit) / rows, program.slopes(x * unit).data * scales[0]
 
-    f = _Call("f", (numbers,), (one,), lambda u: program.cost(u)[:1])
-    g = _Call("g", (numbers,), (conditions,), lambda u: (program.conditions(u),))
+    def curvature_values(x: np.ndarray, _: Any, weight: np.ndarray, weights: np.ndarray) -> tuple[Any, ...]:
+        return (program.curvatures(x * unit, weights / rows, weight[0] / effort).data * scales[1],)
+
+    f = _Call("f", (numbers,), (one,), lambda x: cost(x)[:1])
+    g = _Call("g", (numbers,), (conditions,), lambda x: (program.conditions(x * unit) / rows,))
     calls = {
-        "grad_f": _Call("grad_f", (numbers, nothing), (one, numbers), lambda u, _: program.cost(u)),
+        "grad_f": _Call("grad_f", (numbers, nothing), (one, numbers), lambda x, _: cost(x)),
         "jac_g": _Call("jac_g", (numbers, nothing), (conditions, slopes), slope_values),
         "hess_lag": _Call("hess_lag", (numbers, nothing, one, conditions), (curvatures,), curvature_values),
     }
@@ -330,17 +348,12 @@ def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits) ->
     u = casadi.MX.sym("u", program.unknowns)
     options = {**_OPTIONS, **calls, "ipopt.max_iter": _ITERATIONS}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
-    result = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
+    result = solver(x0=guess / unit, lbx=bounds[0] / unit, ubx=bounds[1] / unit, lbg=least / rows, ubg=most / rows)
     stats = solver.stats()
     go_on()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())
-    return np.array(result["x"]).ravel(), stats["return_status"]
-
-
-def _sparsity(places: Any) -> Any:
-    rows, columns = places.shape
-    return casadi.Sparsity(rows, columns, places.columns.tolist(), places.rows.tolist())
+    return np.array(result["x"]).ravel() * unit, stats["return_status"]
 
 
 class _Call(casadi.Callback):
