@@ -22,14 +22,7 @@ from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import definition_of
-from nonholo.systems import (
-    AbstractCoordinateSystem,
-    Start,
-    central_differences,
-    reach_of,
-    refuse_slip,
-    refuse_wide,
-)
+from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, reach_of, refuse_slip, refuse_wide
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3

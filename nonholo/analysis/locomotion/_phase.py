@@ -184,17 +184,11 @@ def _momenta(
 def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
     """Return by how much two motions and two area rules differ, beside the whole way; NaN if they are not finite."""
     n, momentum = one.connection.group.point_size, np.abs(other.momentum).max(axis=0)
-    way, momentum = (
-        np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0,
-        np.where(momentum == 0, 1.0, momentum),
-    )
-    unit = np.ones_like(one.holonomy)
-    unit[:n, n:] = way
-    ends = [
-        (x.configuration[-1] / unit, x.momentum[-1:] / momentum, x.holonomy / unit, x.area_rule / unit)
-        for x in (one, other)
-    ]
-    gaps = [np.abs(a - b).max(initial=0.0) / (1 + np.abs(a).max(initial=0.0)) for a, b in zip(*ends, strict=True)]
+    sizes, unit = np.where(momentum == 0, 1.0, momentum), np.ones_like(one.holonomy)
+    unit[:n, n:] = np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0
+    ends = ((x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other))
+    pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
+    gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
 
 
