@@ -50,11 +50,6 @@ class Kick(NamedTuple):
     ahead: Equations
     momentum: Float[np.ndarray, "k"]
 
-    @property
-    def present(self) -> Float[np.ndarray, "N N"]:
-        """The present displacement, in the user's frame."""
-        return displacement_at(self.discrete, self.frame, self.point)
-
 
 Following: TypeAlias = tuple[Outcome, Float[np.ndarray, "m"]]
 
@@ -76,7 +71,7 @@ class AbstractBranchRule(abc.ABC):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
-        _check_values_known(where, discrete, self.name)
+        _check_values_known(where, discrete, getattr(self, "function", self.name))
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
@@ -177,14 +172,11 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
 
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse systems of whose values not all are known."""
-        _check_values_known(where, discrete, self.function)
-
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values_after(kick)
-        index = call("branch(found, present)", self.function, values, kick.present)
+        present = displacement_at(kick.discrete, kick.frame, kick.point)
+        index = call("branch(found, present)", self.function, values, present)
         if index is None:
             return _only(kick, roots, values, [])
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
@@ -345,13 +337,9 @@ class RuleStepper(AbstractBodyStepper):
         k = self.motion.system.rank
         return {"reduced_momentum": k, "cayley": k, "canonical_pose": self.motion.system.group.pose_size}
 
-    @property
-    def _frame(self) -> Frame:
-        return frame_of("simulate(discrete=...)", self.motion)
-
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
-        (reduced, pose), frame, group = first.numbers, self._frame, self.motion.system.group
+        (reduced, pose), group, frame = first.numbers, self.motion.system.group, frame_of("simulate", self.motion)
         code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
@@ -362,7 +350,8 @@ class RuleStepper(AbstractBodyStepper):
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by the rule, and carry the pose along."""
         write_first(state, rows)
-        frame, group, good, code = self._frame, self.motion.system.group, 0, Outcome.successful
+        frame, group = frame_of("simulate", self.motion), self.motion.system.group
+        good, code = 0, Outcome.successful
         width, often = self.width, _BATCH if self.rule.is_nearest else 1
         now = self._now(frame, state)
         while code == 0 and good < steps:
