@@ -160,8 +160,8 @@ class LocalConnection:
         k = len(self.momentum_components)
         numbers = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
         remedy = numbers if k else "Leave it out: the constraints alone determine the motion."
-        given = np.zeros(k) if momentum is None else momentum
-        return trailing(f"{owner}(momentum=...)", given, (k,), remedy, real=True)
+        p = np.zeros(k) if momentum is None else momentum
+        return trailing(f"{owner}(momentum=...)", p, (k,), remedy, real=True)
 
     def _points(self, where: str, values: Any) -> Array:
         names = self.shape_coordinates

@@ -125,10 +125,8 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     pose, end = _poses(group, h, _equations.motion(group, at, ds, momentum)[0])
     holonomy = _poses(group, h, _equations.motion(group, at, ds, np.zeros_like(momentum))[0])[1]
     center = s.mean((0, 1))
-    F: Any = sum(  # along the segments from the center
-        weight * x * _equations.curvature(group, connection.terms(center + x * (s - center)))
-        for x, weight in zip(_NODES, _WEIGHTS, strict=True)
-    )
+    segments = ((weight * x, center + x * (s - center)) for x, weight in zip(_NODES, _WEIGHTS, strict=True))
+    F: Any = sum(weight * _equations.curvature(group, connection.terms(shape)) for weight, shape in segments)
     area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
 
     def whole(first: Array, between: Array, last: Array) -> Array:

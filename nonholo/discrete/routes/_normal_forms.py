@@ -149,9 +149,9 @@ class SecularRoute(AbstractCompiledRoute):
     needs_pose: ClassVar[bool] = False
 
     @staticmethod
-    def covers(form: NormalForm) -> bool:
+    def covers(form: NormalForm | None) -> bool:
         """Return whether a body is one of this route."""
-        return not form.is_planar or form.is_diagonal
+        return form is not None and (not form.is_planar or form.is_diagonal)
 
     @functools.cached_property
     def body(self) -> kernels.SecularBody:
