@@ -294,21 +294,6 @@ def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, 
     return now.target if now.lever is None else np.append(now.target, now.push)
 
 
-def clear_places(
-    discrete: Discretization, frame: Frame, begin: np.ndarray, goal: np.ndarray, point: np.ndarray, count: int
-) -> tuple[Place, Float[np.ndarray, "C g"]]:
-    """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
-
-    Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
-    """
-    h, k = float(discrete.time_step), len(frame.stiffness)
-    first, now = goal_of(discrete, frame, begin), frame.equations(h * begin)
-    goals, points = np.empty((count, len(goal))), np.empty((count, len(point)))
-    steps = kernels.advance_to_nearest(nearest_body(now), goal, point, goals, points)
-    change = goals[:steps] - first
-    return Place(points[:steps], begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
-
-
 _BATCH = 256  # steps to the nearest value between two poses that are freed of their rounding errors
 
 
@@ -381,12 +366,24 @@ class RuleStepper(AbstractBodyStepper):
         The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
         """
         if self.rule.is_nearest:
-            ahead, goals = clear_places(self.motion, frame, now.begin, now.goal, now.place.point, most)
+            ahead, goals = self._clear_places(frame, now, most)
             if len(goals):
                 return Outcome.successful, ahead, goals[-1]
         code, following = next_place(self.motion, frame, self.rule, now.place)
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
+
+    def _clear_places(self, frame: Frame, now: "_Now", count: int) -> tuple[Place, Float[np.ndarray, "C g"]]:
+        """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
+
+        Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
+        """
+        h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
+        first, body = goal_of(self.motion, frame, now.begin), nearest_body(frame.equations(h * now.begin))
+        goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
+        steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
+        change = goals[:steps] - first
+        return Place(points[:steps], now.begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
 
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""

@@ -382,14 +382,6 @@ class Axes:
         """Return charts along the canonical rows."""
         return charts if self.rows is None else applied(self.rows.swapaxes(-1, -2), charts)
 
-    def turn(self, g: np.ndarray) -> np.ndarray:
-        """Return matrices of poses of the kernel's axes."""
-        return g if self.frame is None else g @ self.frame
-
-    def turn_back(self, g: np.ndarray) -> np.ndarray:
-        """Return matrices of poses of the canonical axes."""
-        return g if self.frame is None else g @ self.group.inverse(self.frame)
-
     def poses(self, canonical: np.ndarray) -> np.ndarray:
         """Return compact poses of the kernel's axes."""
         return canonical if self.frame is None else self.group.pose_product(canonical, self.turns[0])
