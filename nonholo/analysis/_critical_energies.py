@@ -20,7 +20,8 @@ from nonholo.base.checks import error, instance
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.results import result
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
+from nonholo.discrete import Discretization, refuse_composition
+from nonholo.discrete.branching import Landscape, landscape
 from nonholo.systems import NormalForm
 
 _COINCIDENT = 1e-14  # relative distance of two energies below which a curve of critical points is assumed

@@ -2,7 +2,7 @@
 
 from nonholo.discrete._decoder import momentum_slope, step_jacobians
 from nonholo.discrete._discrete_legendre import discrete_legendre, moser_veselov_displacement
-from nonholo.discrete._discretization import Discretization, as_discretization, check_first_state, initial_state
+from nonholo.discrete._discretization import Discretization, as_discretization, check_first_state
 from nonholo.discrete._discretize import consistency_defect, discretize
 from nonholo.discrete._measured import MeasuredMotion, orbit_of_poses
 from nonholo.discrete._scheme import legendre, refuse_composition, weights
@@ -13,17 +13,9 @@ from nonholo.discrete.branching import (
     BranchGrowth,
     BranchRule,
     BranchTree,
-    Landscape,
     RuleStepper,
-    branch_growth,
     branch_tree,
-    branches,
     checked_rule,
-    displacements_over,
-    fold_distance,
-    frame_of,
     has_frame,
-    inverse_discrete_legendre,
-    landscape,
 )
 from nonholo.discrete.routes import AbstractCompiledRoute, ScalarRoute, reversal_defects

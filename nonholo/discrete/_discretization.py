@@ -14,7 +14,7 @@ from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decod
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weights
 from nonholo.discrete._variety import definition, equations_of
-from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
+from nonholo.discrete.routes import AbstractBodyStepper, AbstractCompiledRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces
 
@@ -49,7 +49,7 @@ class Discretization(Scheme, AbstractMotion):
         return f"Discretization(system={self.system!r}, time_step={self.time_step}, {way})"
 
     @functools.cached_property
-    def route(self) -> AbstractRoute:
+    def route(self) -> AbstractCompiledRoute:
         """The way in which steps are computed; chosen on first use and kept."""
         return make_route(self, self.wanted_route)
 

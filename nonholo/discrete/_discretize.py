@@ -9,7 +9,7 @@ from nonholo.base.checks import choice, error, function, scale
 from nonholo.base.types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Difference, checked_order
-from nonholo.discrete._variety import Constraint, checked_constraint, definition
+from nonholo.discrete._variety import Constraint, at_identity, checked_constraint, definition
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, as_system, refuse_in_coordinates
 
 
@@ -86,27 +86,13 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
     if difference is None:
         return "matrix" if is_defined else "logarithmic"
     if callable(difference):
-        return _scalar(where, system, difference)
+        words = "a real scalar function", "Write L_d(W) with jax.numpy, returning one number.", "Avoid 0/0 there."
+        return at_identity(where, (difference,), system.group, words)[0][0]
     choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
     if difference == "matrix" and not is_defined:
         got = "a kinetic energy given by an inertia operator, which does not extend to W - I outside the algebra"
         remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
         raise error(where, "be defined for the system", got, remedy)
-    return difference
-
-
-def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
-    """Return a traced discrete Lagrangian, which is finite at the identity, and so are its derivatives."""
-    of_jax = definition(where)
-    try:
-        difference = of_jax.trace(difference, system.group)
-        value, slope = of_jax.value_and_slope(difference, system.group)
-    except Exception as failure:
-        got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
-        remedy = "Write L_d(W) with jax.numpy, returning one number."
-        raise error(where, "be a real scalar function of a JAX matrix", got, remedy) from failure
-    if not (np.isfinite(value) and np.all(np.isfinite(slope))):
-        raise error(where, "be differentiable at the identity", f"value {value}, slope {slope}", "Avoid 0/0 there.")
     return difference
 
 

@@ -161,7 +161,9 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     s = len(system.annihilator)
     if len(functions) != s:
         raise error(where, f"be {s} functions, one per forbidden direction", f"{len(functions)}", "Pass as many.")
-    functions, values, derivative = _at_identity(where, functions, system.group)
+    write = "Write each f_j(W) with jax.numpy, for one matrix, returning one number."
+    words = "real scalar functions", write, "Avoid 0/0 and square roots of zero there."
+    functions, values, derivative = at_identity(where, functions, system.group, words)
     if np.abs(values).max(initial=0.0) > _ROUNDING:
         raise error(where, "vanish at the identity", f"values {values}", "Subtract them.")
     along = np.abs(derivative @ system.constraint_subspace.T).max(initial=0.0)
@@ -173,8 +175,13 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     return functions
 
 
-def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tuple[Any, np.ndarray, np.ndarray]:
-    """Return traced functions, their values at the identity and their derivatives along the group."""
+def at_identity(
+    where: str, functions: Any, group: AbstractMatrixGroup, words: tuple[str, str, str]
+) -> tuple[Any, np.ndarray, np.ndarray]:
+    """Return traced functions of a user, their values at the identity and their derivatives along the group.
+
+    The words of errors are what they should be, how to write them, and how to make them differentiable.
+    """
     of_jax, own = definition(where), []
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):
@@ -183,11 +190,10 @@ def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tupl
             values[j], slopes[j] = of_jax.value_and_slope(own[j], group)
         except Exception as failure:
             got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
-            remedy = "Write each f_j(W) with jax.numpy, for one matrix, returning one number."
-            raise error(where, "be real scalar functions of a JAX matrix", got, remedy) from failure
+            raise error(where, f"be {words[0]} of a JAX matrix", got, words[1]) from failure
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
         got = f"values {values}, derivatives {slopes.tolist()}"
-        raise error(where, "be differentiable at the identity", got, "Avoid 0/0 and square roots of zero there.")
+        raise error(where, "be differentiable at the identity", got, words[2])
     return tuple(own), values, slopes
 
 

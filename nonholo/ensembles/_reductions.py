@@ -12,7 +12,8 @@ from nonholo.base.checks import error, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.discrete import displacements_over, frame_of, refuse_composition, step_jacobians
+from nonholo.discrete import refuse_composition, step_jacobians
+from nonholo.discrete.branching import displacements_over, frame_of
 from nonholo.groups import components_of
 from nonholo.io.datasets import compact_names
 from nonholo.simulation import Ensemble, ScalarMembers, in_lanes, tangents

@@ -15,6 +15,8 @@ from nonholo.base.memo import Keeper
 from nonholo.base.numerics import applied, identity_like, integrated_exponential, inverse_of
 from nonholo.base.types import Array, Float, Inexact, Int
 
+Places = Int[np.ndarray, "dim entries"]
+
 
 class SeparatedCoordinates:
     """A basis of which no two matrices share an entry: every map picks entries, and no (dim, N, N) array is needed.
@@ -26,13 +28,7 @@ class SeparatedCoordinates:
         values: Its value; zero for a place that stands for nothing.
     """
 
-    def __init__(
-        self,
-        size: int,
-        rows: Int[np.ndarray, "dim entries"],
-        columns: Int[np.ndarray, "dim entries"],
-        values: Float[np.ndarray, "dim entries"],
-    ) -> None:
+    def __init__(self, size: int, rows: Places, columns: Places, values: Float[np.ndarray, "dim entries"]) -> None:
         is_nonzero = values != 0
         self._rows, self._columns = rows.astype(np.int32), columns.astype(np.int32)  # JAX takes these in 32 bits too
         self._values = values

@@ -15,6 +15,7 @@ from nonholo.groups._base import AbstractMatrixGroup, Coordinates, SeparatedCoor
 from nonholo.groups._special_orthogonal import AbstractBodyGroup, AbstractRodriguesGroup
 
 _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1
+_X, _Y, _Z = np.eye(3)
 
 
 class AbstractMotions(AbstractMatrixGroup):
@@ -46,13 +47,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
     `cayley(x)` is the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`.
     """
 
-    basis: ClassVar[np.ndarray] = np.array(
-        [
-            [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-            [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-            [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]],
-        ]
-    )
+    basis: ClassVar[np.ndarray] = np.stack([np.outer(_Y, _X) - np.outer(_X, _Y), np.outer(_X, _Z), np.outer(_Y, _Z)])
     coordinates: ClassVar[Coordinates] = coordinates_of(basis)
     unit_size: ClassVar[int] = 2
     curvature: ClassVar[float] = 0.0

@@ -18,8 +18,9 @@ from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import _mass
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
-from nonholo.systems._mass import WideInertia, displacement_units, inertia_form, inertia_from_mass_tensor
+from nonholo.systems._mass import WideInertia
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
 
@@ -53,6 +54,14 @@ class AbstractSystem(Keeper, abc.ABC):
     has_blade: ClassVar[bool] = False
     """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
 
+    def __repr__(self) -> str:
+        facts = {"inertia operator": np.asarray(self.inertia_operator)}
+        if getattr(self, "mass_tensor", None) is not None:
+            facts = _mass.tensors_shown(self.group, self.mass_tensor)
+        if "constraint_subspace" in self.structure:
+            facts |= {"constraint subspace": np.asarray(self.constraint_subspace)}
+        return f"{type(self).__name__}({self.group!r},\n  {_mass.lines_of(facts)})"
+
     def _repr_html_(self) -> str:
         constraint = "fixed in space" if self.is_spatial else "fixed in the body"
         rows = [("body", repr(self)), ("moves on", self.group), ("constraint", constraint)]
@@ -71,12 +80,12 @@ class AbstractSystem(Keeper, abc.ABC):
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The symmetric matrix that takes body velocity to body momentum, by default that of the mass tensor."""
-        return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+        return _mass.inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
 
     @property
     def displacement_units(self) -> Float[np.ndarray, "dim"]:
         """Units of the algebra: see `displacement_units`."""
-        return displacement_units(self.group, np.asarray(self.inertia_operator))
+        return _mass.displacement_units(self.group, np.asarray(self.inertia_operator))
 
     @property
     @abc.abstractmethod
@@ -156,7 +165,7 @@ class AbstractSystem(Keeper, abc.ABC):
         rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is None:
             return rows @ self.inertia_operator @ rows.T
-        return inertia_form(self.group, self.group.hat(rows), mass_tensor)
+        return _mass.inertia_form(self.group, self.group.hat(rows), mass_tensor)
 
     @functools.cached_property
     def inertia_factors(self) -> Factors | None:
@@ -425,7 +434,7 @@ class AbstractLRSystem(AbstractSystem):
         g = self._at(configuration)
         xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is not None:
-            return inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
+            return _mass.inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
         images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
         return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
 

@@ -38,13 +38,7 @@ class Start(NamedTuple):
 
     @classmethod
     def of(
-        cls,
-        owner: str,
-        configuration: Any = None,
-        choices: tuple[str, ...] | None = None,
-        *,
-        project: bool = False,
-        **starts: Any,
+        cls, owner: str, configuration: Any = None, choices: Any = None, *, project: bool = False, **starts: Any
     ) -> "Start":
         """Return the start of a call, refused if it names none or several, or one that the motion does not have."""
         if project is not False:

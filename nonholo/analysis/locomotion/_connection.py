@@ -160,9 +160,8 @@ class LocalConnection:
         k = len(self.momentum_components)
         numbers = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
         remedy = numbers if k else "Leave it out: the constraints alone determine the motion."
-        return (
-            np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy, real=True)
-        )
+        p = np.zeros(k) if momentum is None else momentum
+        return trailing(f"{owner}(momentum=...)", p, (k,), remedy, real=True)
 
     def _points(self, where: str, values: Any) -> Array:
         names = self.shape_coordinates
@@ -279,22 +278,16 @@ def _free_components(where: str, reduction: Any, samples: tuple[Array, Array], u
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
     """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
-    functions = door()
+    functions, energy = door(), type(reduction).lagrangian
     M = functions.call(functions.inertia_terms, reduction, shapes)[0]
     for w in (0 * u, u):  # at rest a potential is seen beside itself
-        here, there = (
-            functions.call(type(reduction).lagrangian, reduction, g, shapes, w) for g in (np.zeros(3), poses)
-        )
+        here, there = (functions.call(energy, reduction, g, shapes, w) for g in (np.zeros(3), poses))
         if np.nanmax(np.abs(there - here)) > _SYMMETRIC * np.nanmax(np.abs(here)):
-            got = "one that changes where it is moved and turned"
-            raise error(
-                where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out."
-            )
-        momenta, quadratic = (
-            functions.call(functions.momenta, reduction, shapes, w),
-            np.einsum("...ab,...b->...a", M, w),
-        )
-        if np.any(np.nanmax(np.abs(momenta - quadratic), axis=0) > _SYMMETRIC * np.nanmax(np.abs(quadratic), axis=0)):
+            got, remedy = "one that changes where it is moved and turned", "Leave potentials of the pose out."
+            raise error(where, "have a Lagrangian that is the same at every pose", got, remedy)
+        linear = np.einsum("...ab,...b->...a", M, w)
+        gaps = np.abs(functions.call(functions.momenta, reduction, shapes, w) - linear)
+        if np.any(np.nanmax(gaps, axis=0) > _SYMMETRIC * np.nanmax(np.abs(linear), axis=0)):
             raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
 
 

@@ -125,10 +125,8 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     pose, end = _poses(group, h, _equations.motion(group, at, ds, momentum)[0])
     holonomy = _poses(group, h, _equations.motion(group, at, ds, np.zeros_like(momentum))[0])[1]
     center = s.mean((0, 1))
-    F: Any = sum(  # along the segments from the center
-        weight * x * _equations.curvature(group, connection.terms(center + x * (s - center)))
-        for x, weight in zip(_NODES, _WEIGHTS, strict=True)
-    )
+    segments = ((weight * x, center + x * (s - center)) for x, weight in zip(_NODES, _WEIGHTS, strict=True))
+    F: Any = sum(weight * _equations.curvature(group, connection.terms(shape)) for weight, shape in segments)
     area = -np.einsum("t,k,tkaij,tki,tkj->a", h, _WEIGHTS, F, s - center, ds)
 
     def whole(first: Array, between: Array, last: Array) -> Array:
@@ -184,17 +182,11 @@ def _momenta(
 def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
     """Return by how much two motions and two area rules differ, beside the whole way; NaN if they are not finite."""
     n, momentum = one.connection.group.point_size, np.abs(other.momentum).max(axis=0)
-    way, momentum = (
-        np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0,
-        np.where(momentum == 0, 1.0, momentum),
-    )
-    unit = np.ones_like(one.holonomy)
-    unit[:n, n:] = way
-    ends = [
-        (x.configuration[-1] / unit, x.momentum[-1:] / momentum, x.holonomy / unit, x.area_rule / unit)
-        for x in (one, other)
-    ]
-    gaps = [np.abs(a - b).max(initial=0.0) / (1 + np.abs(a).max(initial=0.0)) for a, b in zip(*ends, strict=True)]
+    sizes, unit = np.where(momentum == 0, 1.0, momentum), np.ones_like(one.holonomy)
+    unit[:n, n:] = np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0
+    ends = ((x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other))
+    pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
+    gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
 
 

@@ -205,9 +205,8 @@ def brackets(
     yield basis[()]
     for _ in range(order):
         along, across = _product(_slopes(fields, n), basis, order), _product(slopes, fields, order)
-        fields = {
-            power: (along[power] - np.swapaxes(across[power], 1, 2)).reshape(n, -1) for power in along.keys() & across
-        }
+        both = along.keys() & across
+        fields = {power: (along[power] - np.swapaxes(across[power], 1, 2)).reshape(n, -1) for power in both}
         yield fields[()]
 
 

@@ -300,13 +300,10 @@ class Disc(PlanarBody):
         r"""Return the surface of the forms $z_0Bz + sz^\perp$ and $z_0s - z^\perp\cdot Bz$, $s = c\cdot z^\perp$."""
         (b11, b12), (_, b22) = self.inertia
         c1, c2 = self.coupling
-        forms = np.array(
-            [
-                [[0, b11, b12], [b11, 0, -c2], [b12, -c2, 2 * c1]],
-                [[0, b12, b22], [b12, 2 * c2, -c1], [b22, -c1, 0]],
-                [[0, c2, -c1], [c2, -2 * b12, b11 - b22], [-c1, b11 - b22, 2 * b12]],
-            ]
-        )
+        first = [[0, b11, b12], [b11, 0, -c2], [b12, -c2, 2 * c1]]
+        second = [[0, b12, b22], [b12, 2 * c2, -c1], [b22, -c1, 0]]
+        third = [[0, c2, -c1], [c2, -2 * b12, b11 - b22], [-c1, b11 - b22, 2 * b12]]
+        forms = np.array([first, second, third])
         size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
         axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ self.frame.T
         return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))

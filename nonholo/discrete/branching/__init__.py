@@ -1,12 +1,11 @@
 """The values of the multivalued map: their equations, how one is followed, rules that choose among them, their tree."""
 
-from nonholo.discrete.branching._equations import Frame, frame_of, has_frame
+from nonholo.discrete.branching._equations import frame_of, has_frame
 from nonholo.discrete.branching._growth import BranchGrowth, branch_growth
 from nonholo.discrete.branching._rules import (
     PRINCIPAL,
     AbstractBranchRule,
     BranchRule,
-    Place,
     RuleStepper,
     branch_rule,
     checked_rule,

@@ -43,12 +43,6 @@ class Pulled(Equations):
     pull: Inexact[Array, "m k"] = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
     drag: Inexact[Array, "m m"] = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
 
-    @classmethod
-    def at_rest(cls, k: int, slides: bool) -> "Pulled":
-        """Return equations without any inertia or force."""
-        m, none = k + slides, np.zeros(k)
-        return cls(none, none, none, 0.0 if slides else None, 0.0, np.zeros((m, k)), np.zeros((m, m)))
-
     @property
     def parameters(self) -> tuple[str, ...]:  # type: ignore[override]
         """The names of all numbers."""
@@ -120,7 +114,8 @@ class Pulled(Equations):
 @functools.cache
 def _around(k: int, slides: bool) -> tuple[Pulled, Inexact[np.ndarray, "B m"]]:
     """Return a generic problem and its roots: some by Newton's method, the others where loops of problems lead them."""
-    rng, still = np.random.default_rng(0), Pulled.at_rest(k, slides)
+    rng, m, none = np.random.default_rng(0), k + slides, np.zeros(k)
+    still = Pulled(none, none, none, 0.0 if slides else None, 0.0, np.zeros((m, k)), np.zeros((m, m)))
     generic = disturb(still, rng)
     points = rng.normal(size=(_STARTS, 1 + k + slides, 2)) @ np.array([1.0, 1j])
     points[:, : 1 + k] /= np.sqrt((points[:, : 1 + k] ** 2).sum(axis=1, keepdims=True))

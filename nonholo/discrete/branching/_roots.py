@@ -17,6 +17,8 @@ import numpy as np
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.discrete.branching._equations import Equations
 
+Points = Inexact[Array, "B m"]
+
 
 def candidates(equations: Equations) -> Inexact[Array, "B m"]:
     """Return approximate roots, only finite ones."""
@@ -272,10 +274,7 @@ def _is_complex(equations: Equations) -> bool:
 
 
 def by_loops(
-    generic: Equations,
-    points: Inexact[Array, "B m"],
-    draw: Callable[[], Equations],
-    is_complete: Callable[[Inexact[Array, "B m"]], bool],
+    generic: Equations, points: Points, draw: Callable[[], Equations], is_complete: Callable[[Points], bool]
 ) -> Inexact[Array, "C m"]:
     """Return the roots of a generic problem: the known ones, and those where loops of problems lead them."""
     points = distinct(generic, points)

@@ -50,11 +50,6 @@ class Kick(NamedTuple):
     ahead: Equations
     momentum: Float[np.ndarray, "k"]
 
-    @property
-    def present(self) -> Float[np.ndarray, "N N"]:
-        """The present displacement, in the user's frame."""
-        return displacement_at(self.discrete, self.frame, self.point)
-
 
 Following: TypeAlias = tuple[Outcome, Float[np.ndarray, "m"]]
 
@@ -76,7 +71,7 @@ class AbstractBranchRule(abc.ABC):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
-        _check_values_known(where, discrete, self.name)
+        _check_values_known(where, discrete, getattr(self, "function", self.name))
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
@@ -177,14 +172,11 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
 
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse systems of whose values not all are known."""
-        _check_values_known(where, discrete, self.function)
-
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values_after(kick)
-        index = call("branch(found, present)", self.function, values, kick.present)
+        present = displacement_at(kick.discrete, kick.frame, kick.point)
+        index = call("branch(found, present)", self.function, values, present)
         if index is None:
             return _only(kick, roots, values, [])
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
@@ -302,21 +294,6 @@ def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, 
     return now.target if now.lever is None else np.append(now.target, now.push)
 
 
-def clear_places(
-    discrete: Discretization, frame: Frame, begin: np.ndarray, goal: np.ndarray, point: np.ndarray, count: int
-) -> tuple[Place, Float[np.ndarray, "C g"]]:
-    """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
-
-    Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
-    """
-    h, k = float(discrete.time_step), len(frame.stiffness)
-    first, now = goal_of(discrete, frame, begin), frame.equations(h * begin)
-    goals, points = np.empty((count, len(goal))), np.empty((count, len(point)))
-    steps = kernels.advance_to_nearest(nearest_body(now), goal, point, goals, points)
-    change = goals[:steps] - first
-    return Place(points[:steps], begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
-
-
 _BATCH = 256  # steps to the nearest value between two poses that are freed of their rounding errors
 
 
@@ -345,13 +322,9 @@ class RuleStepper(AbstractBodyStepper):
         k = self.motion.system.rank
         return {"reduced_momentum": k, "cayley": k, "canonical_pose": self.motion.system.group.pose_size}
 
-    @property
-    def _frame(self) -> Frame:
-        return frame_of("simulate(discrete=...)", self.motion)
-
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
-        (reduced, pose), frame, group = first.numbers, self._frame, self.motion.system.group
+        (reduced, pose), group, frame = first.numbers, self.motion.system.group, frame_of("simulate", self.motion)
         code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
@@ -362,7 +335,8 @@ class RuleStepper(AbstractBodyStepper):
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by the rule, and carry the pose along."""
         write_first(state, rows)
-        frame, group, good, code = self._frame, self.motion.system.group, 0, Outcome.successful
+        frame, group = frame_of("simulate", self.motion), self.motion.system.group
+        good, code = 0, Outcome.successful
         width, often = self.width, _BATCH if self.rule.is_nearest else 1
         now = self._now(frame, state)
         while code == 0 and good < steps:
@@ -392,12 +366,24 @@ class RuleStepper(AbstractBodyStepper):
         The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
         """
         if self.rule.is_nearest:
-            ahead, goals = clear_places(self.motion, frame, now.begin, now.goal, now.place.point, most)
+            ahead, goals = self._clear_places(frame, now, most)
             if len(goals):
                 return Outcome.successful, ahead, goals[-1]
         code, following = next_place(self.motion, frame, self.rule, now.place)
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
+
+    def _clear_places(self, frame: Frame, now: "_Now", count: int) -> tuple[Place, Float[np.ndarray, "C g"]]:
+        """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
+
+        Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
+        """
+        h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
+        first, body = goal_of(self.motion, frame, now.begin), nearest_body(frame.equations(h * now.begin))
+        goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
+        steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
+        change = goals[:steps] - first
+        return Place(points[:steps], now.begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
 
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""

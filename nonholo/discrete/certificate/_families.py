@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from itertools import zip_longest
 from typing import Any, NamedTuple
 
-from flint import fmpq_mat, fmpq_poly, fmpz, fmpz_mat, fmpz_poly
+from flint import fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_mat, fmpz_poly
 
 from nonholo.discrete.certificate._roots import Problem
 
@@ -153,11 +153,11 @@ def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
     M, right = _equations_at(problem, *factor.coeffs())
     if M.rank() + 1 < M.ncols() or _augment(M, right).rank() >= M.ncols():
         return  # no solution, or whole curves of them
-    *y, s = [fmpq_poly([p, v]) for p, v in zip(_particular(M, right), _null(M), strict=True)]
+    *y, s = [fmpq_poly([p, v]) for p, v in _line(M, right)]
     compatible = s - 1 - _dot(y, y)
     if compatible == 0:
         return
-    left = _null(M.transpose())
+    left = [v for _, v in _line(M.transpose(), fmpz_mat(M.ncols(), 1))]
     if _shares_root(compatible, compatible.derivative()) or _shares_root(compatible, _dot(left[:-1], y) + left[-1]):
         raise UncertainError("the multiplicity of a root that the secular polynomial hides is not known")
     compatible = compatible // compatible.gcd(s)
@@ -191,26 +191,13 @@ def _clear_denominators(polynomials: list[fmpq_poly]) -> tuple[fmpz, list[fmpz_p
     return unit, [(polynomial * unit).numer() for polynomial in polynomials]
 
 
-def _null(M: fmpz_mat) -> list:
-    """Return a null vector of a matrix of corank one."""
-    reduced, size = fmpq_mat(M).rref()[0], M.ncols()
+def _line(M: fmpz_mat, right: fmpz_mat) -> list[tuple[fmpq, fmpq]]:
+    """Return one solution of compatible equations of corank one and a null vector, as pairs of components."""
+    reduced, size = fmpq_mat(_augment(M, right)).rref()[0], M.ncols()
     pivots = [next(j for j in range(size) if reduced[i, j] != 0) for i in range(size - 1)]
     free = next(j for j in range(size) if j not in pivots)
-    vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
-    vector[free] += 1
-    for i, j in enumerate(pivots):
-        vector[j] = -reduced[i, free]
-    return vector
-
-
-def _particular(M: fmpz_mat, right: fmpz_mat) -> list:
-    """Return one solution of compatible equations of corank one."""
-    size = M.ncols()
-    reduced = fmpq_mat(_augment(M, right)).rref()[0]
-    vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
-    for i in range(size - 1):
-        vector[next(j for j in range(size) if reduced[i, j] != 0)] = reduced[i, size]
-    return vector
+    pairs = {free: (fmpq(0), fmpq(1))} | {j: (reduced[i, size], -reduced[i, free]) for i, j in enumerate(pivots)}
+    return [pairs[j] for j in range(size)]
 
 
 def _half_turn(problem: Problem, multiplicity: int) -> Family:

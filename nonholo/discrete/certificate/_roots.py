@@ -44,15 +44,15 @@ def problem_of(form: NormalForm, time_step: float, momentum: np.ndarray) -> Prob
     """Return the exact problem of a body, in its own doubles, for canonical restricted momenta."""
     h = _exact(time_step)
     p = [h * _exact(x) for x in (momentum if form.frame_map is None else form.frame_map @ momentum).tolist()]
-    B, c = _stiffness(_rows(form.across), _exact(float(form.along))), [_exact(x) for x in form.coupling]
+    B, c = _stiffness(form), [_exact(x) for x in form.coupling]
     if not form.is_sleigh:
         return _problem(B, c, [x / 2 for x in p])
-    a, m, offset = _exact(float(form.arm)), _exact(float(form.mass)), [_exact(x) for x in form.offset]
+    a, m, offset = _exact(form.arm), _exact(form.mass), [_exact(x) for x in form.offset]
     r = [(x - o * p[-1]) / 2 for x, o in zip(p[:-1], offset, strict=True)]
-    return _problem(B, c, r, a * p[-1] / 2 + m * a * a, (a, p[-1] / m, offset, m * a))
+    return _problem(B, c, r, a * p[-1] / 2 + m * a * a, Lever(a, p[-1] / m, offset, m * a))
 
 
-def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None = None) -> Problem:
+def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: Lever | None = None) -> Problem:
     d = [x - y for x, y in zip(r, c, strict=True)]
     whole_B, denominator = fmpq_mat(B).numer_denom()
     unit = max(denominator, *(x.q for x in (*c, *d, half)))
@@ -60,22 +60,16 @@ def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: tuple | None 
     def whole(x: fmpq) -> fmpz:
         return (x * unit).p
 
-    exact = None
-    if lever is not None:
-        arm, push, offset, moment = lever
-        exact = Lever(arm, push, offset, moment * unit)
-    return Problem(whole_B * (unit // denominator), [whole(x) for x in c], [whole(x) for x in d], whole(half), exact)
+    lever = lever and lever._replace(moment=lever.moment * unit)
+    return Problem(whole_B * (unit // denominator), [whole(x) for x in c], [whole(x) for x in d], whole(half), lever)
 
 
-def _stiffness(rows: list[list[fmpq]], diagonal: fmpq) -> list[list[fmpq]]:
-    return [[x + diagonal if i == j else x for j, x in enumerate(row)] for i, row in enumerate(rows)]
+def _stiffness(form: NormalForm) -> list[list[fmpq]]:
+    rows, along = np.asarray(form.across).tolist(), _exact(form.along)
+    return [[_exact(x) + (along if i == j else _ZERO) for j, x in enumerate(row)] for i, row in enumerate(rows)]
 
 
-def _rows(matrix: np.ndarray) -> list[list[fmpq]]:
-    return [[_exact(x) for x in row] for row in np.asarray(matrix).tolist()]
-
-
-def _exact(x: float) -> fmpq:
+def _exact(x: Any) -> fmpq:
     return fmpq(*float(x).as_integer_ratio())
 
 
@@ -88,11 +82,9 @@ _STEPS = 8  # of Newton's method; two suffice from a good guess
 def isolate(polynomial: fmpz_poly) -> list[acb] | None:
     """Return a ball for each real root and one of each conjugate pair, None if no precision separates them."""
     guess = _guess(polynomial)
-    attempts = chain(
-        (sharpen(polynomial, guess, bits) for bits in (_ROUGH, PRECISIONS[0])),
-        (sharpen(polynomial, _search(polynomial, bits), bits) for bits in PRECISIONS),
-    )
-    return next((balls for balls in attempts if balls is not None), None)
+    guesses = ((guess, bits) for bits in (_ROUGH, PRECISIONS[0]))
+    attempts = chain(guesses, ((_search(polynomial, bits), bits) for bits in PRECISIONS))
+    return next((balls for each in attempts if (balls := sharpen(polynomial, *each)) is not None), None)
 
 
 def sharpen(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb] | None:

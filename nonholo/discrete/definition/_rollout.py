@@ -135,8 +135,7 @@ def _step_from(
     if balance is None and scalar is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, scalar, g, impulse)
         return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
-    has_stages = balance is not None or discrete.order > 2
-    step = _in_stages(discrete, scalar, _stage_of(balance)) if has_stages else _matrix_step(discrete, impulse)
+    step = _in_stages(discrete, scalar, _stage_of(forces))
     return step, lambda node: (node.m, node.y, node.g, node.after[1]), (r, g, len(discrete.variety.chart))
 
 
@@ -217,19 +216,6 @@ def _closed_step(
     return step, C, at
 
 
-def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
-    """Return the step by the matrix equations."""
-
-    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        del guess  # there is no certificate
-        kick = 0.0 if impulse is None else _step.restricted(discrete, impulse(r, g, row), g)
-        y, code = _step.principal_of(discrete, None, r + kick, g)
-        _, following, after = _arrival(discrete, (impulse, None), (r, g, row), y)
-        return _Node(r, g, y, (following, after), code, jnp.sum(y))
-
-    return step
-
-
 def _arrival(part: Any, forces: _Forces, state: _State, y: Array) -> tuple[Array, Array, Array]:
     """Return what vanishes at the chart of the step of order 2 from a state, and momenta and pose after it."""
     (impulse, balance), (r, g, row), push = forces, state, 0.0
@@ -262,15 +248,17 @@ def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., 
     return step
 
 
-def _stage_of(balance: Forced | None) -> Callable[..., tuple[Array, ...]]:
-    return _free_stage if balance is None else functools.partial(_balanced_stage, balance)
+def _stage_of(forces: _Forces) -> Callable[..., tuple[Array, ...]]:
+    impulse, balance = forces
+    return functools.partial(_kicked_stage, impulse) if balance is None else functools.partial(_balanced_stage, balance)
 
 
-def _free_stage(part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
-    """Take the step of order 2 without forces."""
-    r, g, _ = state
-    y, outcome = _step.principal_of(part, scalar, r, g)
-    return y, outcome, *_move(part, r, y, g)
+def _kicked_stage(impulse: _Impulse | None, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
+    """Take the step of order 2, under kicks at its nodes or none."""
+    r, g, row = state
+    kick = 0.0 if impulse is None else _step.restricted(part, impulse(r, g, row), g)
+    y, outcome = _step.principal_of(part, scalar, r + kick, g)
+    return y, outcome, *_arrival(part, (impulse, None), state, y)[1:]
 
 
 def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
@@ -280,11 +268,10 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     """
     problem = part, forced, state
     constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
-    residual = functools.partial(_balanced_gap, *constants)
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
-        change = jnp.linalg.solve(jax.jacfwd(residual)(y), residual(y))
+        change = jnp.linalg.solve(jax.jacfwd(_balanced_gap)(y, *constants), _balanced_gap(y, *constants))
         return y - change, jnp.max(jnp.abs(change)), count + 1
 
     free, code = _step.principal_of(constants[0], still, constants[2][0], constants[2][1])
@@ -301,22 +288,18 @@ def _correct(problem: tuple[Any, Forced, _State], y: Array) -> Array:
 
     Where JAX forgets the rule, as in reverse mode of reverse mode, the corrections have two more of them.
     """
-    residual = functools.partial(_balanced_gap, *problem)
-    slope = jax.jacfwd(residual)(y)
+    slope = jax.jacfwd(_balanced_gap)(y, *problem)
     for _ in range(2):
-        y = y - jnp.linalg.solve(slope, residual(y))
+        y = y - jnp.linalg.solve(slope, _balanced_gap(y, *problem))
     return y
 
 
 @_correct.defjvp
 def _implicit(primals: Any, tangents: Any) -> tuple[Array, Array]:
-    def residual(y: Array, part: Any, forced: Forced, state: _State) -> Array:
-        return _balanced_gap(part, forced, state, y)
-
-    return implicit(residual, _correct(*primals), primals[0], tangents[0])
+    return implicit(_balanced_gap, _correct(*primals), primals[0], tangents[0])
 
 
-def _balanced_gap(part: Any, forced: Forced, state: _State, y: Array) -> Array:
+def _balanced_gap(y: Array, part: Any, forced: Forced, state: _State) -> Array:
     """Return what vanishes at the chart of a step under forces at its displacement."""
     return _arrival(part, (None, forced), state, y)[0]
 
@@ -385,7 +368,7 @@ def step_slopes(
         def stage(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], None]:
             slope, r, g = carry
             part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
-            y, _, ahead, after = _stage_of(balance)(part, own, (r, g, row))
+            y, _, ahead, after = _stage_of((impulse, balance))(part, own, (r, g, row))
             return (_slope_of(part, (impulse, balance), (r, g, row), y) @ slope, ahead, after), None
 
         begin = jnp.eye(len(row) + len(r)), r, g

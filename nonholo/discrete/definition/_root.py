@@ -59,12 +59,8 @@ def followed_root(
     As `principal_root`, from a start of the caller's: a root and its momenta.
     """
     residual, numbers = jax.closure_convert(residual, *start)
-    certificate, facts = jax.closure_convert(certificate or _uncertain, *start)
+    certificate, facts = jax.closure_convert(certificate or (lambda _y, _m: jnp.asarray(False)), *start)
     return _search(residual, certificate, numbers, facts, start, target, guess)
-
-
-def _uncertain(_y: Array, _m: Array) -> Array:
-    return jnp.asarray(False)
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0, 1))
@@ -175,21 +171,20 @@ def _continue(
         )
         return following if guess is None else _unless_it_failed(following, begin, is_certain(y, target))
 
-    zero, finite = 0 * one, jnp.all(jnp.isfinite(target))
+    def is_open(path: _Path) -> Array:
+        return jnp.all(jnp.isfinite(target)) & (_is_unfinished(path) | (~path.converged & (path.count < _LAST)))
+
+    zero = 0 * one
     nothing, no = jnp.zeros_like(root), jnp.asarray(False)
     begin = _Path(zero, _FIRST / 2 * one, root, nothing, zero, zero, root, root, jnp.asarray(-1), no, no)
     first = begin if guess is None else begin._replace(s=one, iterate=guess, count=jnp.asarray(0), trial=~no)
-    end = jax.lax.while_loop(lambda path: _goes_on(path) & finite, advance, first)
+    end = jax.lax.while_loop(is_open, advance, first)
     return end, *_verdict(end)
 
 
 def _is_unfinished(path: _Path) -> Array:
     least = jnp.finfo(path.s.dtype).tiny * 1e3
     return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
-
-
-def _goes_on(path: _Path) -> Array:
-    return _is_unfinished(path) | (~path.converged & (path.count < _LAST))
 
 
 def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:

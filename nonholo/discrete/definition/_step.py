@@ -8,7 +8,7 @@ principal displacement for JAX is that of the closed form of a body where it has
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox
 import jax
@@ -156,24 +156,14 @@ def momenta_by_derivative(
 ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
 
-class ClosedStep(NamedTuple):
-    """The closed form of a step, between momenta and charts of the canonical frame and those of the kernel.
+def closed_step_of(discrete: Scheme, step: ScalarStep) -> tuple[kernels.Body, Float[Array, "2 2"], Any]:
+    """Return a closed form between momenta and charts of the canonical frame and those of the kernel.
 
-    Attributes:
-        body: The body of the kernel.
-        momenta: C with m = C r, for r along the rows of the constraint subspace.
-        rows: R with y_canonical = y R; None where they are the same.
+    It is the body of the kernel, C with m = C r, for r along the rows of the constraint subspace, and R with
+    y_canonical = y R; None where these are the same.
     """
-
-    body: kernels.Body
-    momenta: Float[Array, "2 2"]
-    rows: Float[Array, "2 2"] | None
-
-
-def closed_step_of(discrete: Scheme, step: ScalarStep) -> ClosedStep:
-    """Return the closed form with the numbers that it has for a discretization."""
     C = jnp.asarray(discrete.system.frame_map)
-    return ClosedStep(step.body, step.scale * (C if step.rows is None else step.rows @ C), step.rows)
+    return step.body, step.scale * (C if step.rows is None else step.rows @ C), step.rows
 
 
 def traceable(number: Array) -> Array:
@@ -194,6 +184,6 @@ def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k
     """Return canonical chart coordinates of the principal displacement with momenta r along d, and the outcome."""
     if scalar is None:
         return principal_displacement(discrete, r, g)
-    step = closed_step_of(discrete, scalar)
-    y, code = kernel_root(step.body, step.momenta @ r)
-    return y if step.rows is None else y @ step.rows, code
+    body, C, rows = closed_step_of(discrete, scalar)
+    y, code = kernel_root(body, C @ r)
+    return y if rows is None else y @ rows, code

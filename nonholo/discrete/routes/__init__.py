@@ -11,13 +11,7 @@
 | `FunctionRoute` | the definition of the impulses, for constraints fixed in space and around `DefinitionRoute` |
 """
 
-from nonholo.discrete.routes._base import (
-    AbstractBodyStepper,
-    AbstractCompiledRoute,
-    AbstractRoute,
-    Compact,
-    reversal_defects,
-)
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, reversal_defects
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._forced import FunctionRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, ScalarStep, SecularRoute

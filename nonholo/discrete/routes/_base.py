@@ -3,7 +3,6 @@
 import abc
 import dataclasses
 import functools
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,8 +17,6 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses
 from nonholo.systems import System
 
-Part = Callable[[np.ndarray, np.ndarray, float, int, float], "Compact | None"]
-"""From momenta, pose, time, step and a fraction of it to what is reached; None where there is no such step."""
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
 
@@ -134,52 +131,11 @@ class CompiledStepper(AbstractBodyStepper):
         return self.route.decode_poses(poses)
 
 
-class AbstractRoute(abc.ABC):
-    """A way to compute the steps of a discretization.
+class AbstractCompiledRoute(abc.ABC):
+    """A way to compute the steps of a discretization: a kernel, which has separate units and perhaps axes.
 
     A route sees a system, its displacement variety and a time step. Momenta, charts and poses that it takes and returns
-    are canonical.
-    """
-
-    order: int = 2
-    """Of the steps that it takes: 2, or that of a composition."""
-    is_scalar: ClassVar[bool] = False
-    """Whether it works with scalars, so that members of an ensemble can run side by side."""
-    needs_pose: bool = True
-    """Whether it carries a pose along even where none is kept."""
-
-    @property
-    @abc.abstractmethod
-    def name(self) -> str:
-        """Its name in stores; a composition has that of what is composed."""
-
-    @property
-    @abc.abstractmethod
-    def compiled_route(self) -> "AbstractCompiledRoute | None":
-        """The route itself if its runs are compiled; None if there is only the definition."""
-
-    @abc.abstractmethod
-    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
-        """Return what takes the steps of a discretization, and saves poses or not."""
-
-    @abc.abstractmethod
-    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
-        """Return the displacements that follow, one step of order 2 from each state."""
-
-    @abc.abstractmethod
-    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
-        """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
-
-        Rows that cannot continue are NaN.
-        """
-
-    @abc.abstractmethod
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
-        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-
-
-class AbstractCompiledRoute(AbstractRoute):
-    """A route with a compiled kernel, which has separate units and perhaps axes.
+    are canonical. Where there is no kernel the definition takes its place, in the same numbers.
 
     Attributes:
         system: The system.
@@ -188,6 +144,19 @@ class AbstractCompiledRoute(AbstractRoute):
 
     system: System
     time_step: Array
+    order: int = 2
+    """Of the steps that it takes: 2, or that of a composition."""
+    is_scalar: ClassVar[bool] = False
+    """Whether it works with scalars, so that members of an ensemble can run side by side."""
+    needs_pose: bool = True
+    """Whether it carries a pose along even where none is kept."""
+    part_needs_pose: ClassVar[bool] = False
+    """Whether parts of its steps do."""
+
+    @property
+    @abc.abstractmethod
+    def name(self) -> str:
+        """Its name in stores; a composition has that of what is composed."""
 
     @property
     @abc.abstractmethod
@@ -236,8 +205,8 @@ class AbstractCompiledRoute(AbstractRoute):
         return group.pose_from_matrix(poses.reshape(*poses.shape[:-1], group.size, group.size))
 
     @property
-    def compiled_route(self) -> "AbstractCompiledRoute":
-        """The route itself."""
+    def compiled_route(self) -> "AbstractCompiledRoute | None":
+        """The route itself if its runs are compiled; None if there is only the definition."""
         return self
 
     @functools.cached_property
@@ -296,8 +265,8 @@ class AbstractCompiledRoute(AbstractRoute):
         code, chart, _ = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
         return Outcome(code), one.from_kernel(chart)
 
-    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> CompiledStepper:
-        """Return what takes the steps with the kernel, to the principal value."""
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
+        """Return what takes the steps of a discretization, and saves poses or not: the kernel."""
         del branch
         return CompiledStepper(motion, self, with_poses)
 
@@ -311,7 +280,10 @@ class AbstractCompiledRoute(AbstractRoute):
         return self.from_kernel(following)
 
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
-        """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
+        """Take one step from each row of momenta and poses of the user's frame; return both after it, and the outcomes.
+
+        Rows that cannot continue are NaN.
+        """
         group, frame = self.system.group, self.system.frame
         poses = self.encode_poses(group.pose_from_matrix(g @ frame))
         after, places, codes = self.parts_of_steps(self.encode(momenta), poses)
@@ -320,8 +292,17 @@ class AbstractCompiledRoute(AbstractRoute):
         return self.decode(after), ahead, codes
 
     def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
-        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        return parts_by(self, self._part, poses_of(states, is_needed=self.needs_pose), states, fractions)
+        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts.
+
+        They are taken one by one, with the numbers of the kernel. So the bits of each do not depend on the others.
+        """
+        poses = poses_of(states, is_needed=self.needs_pose or self.part_needs_pose)
+        poses = self.encode_poses(poses) if poses.size else poses
+        rows = self.encode(states.reduced_momentum), poses, states.time, states.step.tolist(), fractions
+        nowhere = tuple(np.full(size, np.nan) for size in (*self.sizes[:2], poses.shape[1]))
+        ends = (self._part(*row) or nowhere for row in zip(*rows, strict=True))
+        momenta, charts, places = (np.array(column) for column in zip(*ends, strict=True))
+        return self.decode(momenta), self.from_kernel(charts), self.decode_poses(places) if places.size else places
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         """Return the kernel's momenta, chart and pose after a fraction of a step; None where there is no such step."""
@@ -338,21 +319,6 @@ class AbstractCompiledRoute(AbstractRoute):
         """Take a fraction of a step from each of the kernel's momenta and poses; return both, and the outcomes."""
         parts = kernels.ComposedBody(self.single.body, fraction * weights(self.order))
         return kernels.whole_steps(parts, momenta, poses)
-
-
-def parts_by(
-    route: AbstractCompiledRoute, part: Part, poses: np.ndarray, states: Orbit, fractions: np.ndarray
-) -> Compact:
-    """Return canonical momenta, charts and poses after parts of steps, taken one by one with the numbers of a kernel.
-
-    So the bits of each do not depend on the others.
-    """
-    poses = route.encode_poses(poses) if poses.size else poses
-    rows = route.encode(states.reduced_momentum), poses, states.time, states.step.tolist(), fractions
-    nowhere = tuple(np.full(size, np.nan) for size in (*route.sizes[:2], poses.shape[1]))
-    ends = (part(*row) or nowhere for row in zip(*rows, strict=True))
-    momenta, charts, places = (np.array(column) for column in zip(*ends, strict=True))
-    return route.decode(momenta), route.from_kernel(charts), route.decode_poses(places) if places.size else places
 
 
 def poses_of(states: Orbit, *, is_needed: bool) -> np.ndarray:
@@ -416,14 +382,6 @@ class Axes:
     def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
         """Return charts along the canonical rows."""
         return charts if self.rows is None else applied(self.rows.swapaxes(-1, -2), charts)
-
-    def turn(self, g: np.ndarray) -> np.ndarray:
-        """Return matrices of poses of the kernel's axes."""
-        return g if self.frame is None else g @ self.frame
-
-    def turn_back(self, g: np.ndarray) -> np.ndarray:
-        """Return matrices of poses of the canonical axes."""
-        return g if self.frame is None else g @ self.group.inverse(self.frame)
 
     def poses(self, canonical: np.ndarray) -> np.ndarray:
         """Return compact poses of the kernel's axes."""

@@ -10,13 +10,13 @@ from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import definition, variety_of
-from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, AbstractRoute, Compact
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
 from nonholo.discrete.routes._slipping import slip_route
 from nonholo.orbit import Orbit
-from nonholo.systems import Forced
+from nonholo.systems import Forced, NormalForm
 
 
 @pytree
@@ -81,7 +81,7 @@ _SECULAR = (*_SCALAR, "secular")
 _MATRIX = (*_SECULAR, "matrix")
 
 
-def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
+def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractCompiledRoute:
     """Return the route of a discretization.
 
     Args:
@@ -105,28 +105,14 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
     return single if route is None or scheme.order == 2 else ComposedRoute(route, scheme.order)
 
 
-def _single(scheme: Scheme, route_name: str | None) -> AbstractRoute:
+def _single(scheme: Scheme, route_name: str | None) -> AbstractCompiledRoute:
+    """Return the route of steps of order 2: by the normal form of a top or a sleigh, on matrices, by the definition."""
+    system, form, h = scheme.system, scheme.system.normal_form, scheme.time_step
     if scheme.difference == "matrix" and scheme.constraint in ("skew", "exponential"):
-        route = _of_form(scheme, route_name) or _of_matrices(scheme, route_name)
-        if route is not None:
-            return route
-    return DefinitionRoute(scheme.system, scheme.time_step, scheme.difference, scheme.constraint, scheme.order)
-
-
-def _of_form(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
-    """Return the route of a top or a sleigh, by the numbers of its normal form."""
-    form = scheme.system.normal_form
-    if form is None:
-        return None
-    if route_name in _SCALAR and (entry := closed_form(form)):
-        return ScalarRoute(scheme.system, form, entry, scheme.time_step)
-    if route_name in _SECULAR and SecularRoute.covers(form):
-        return SecularRoute(scheme.system, form, scheme.time_step)
-    return None
-
-
-def _of_matrices(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
-    """Return the route of any system whose variety is no exponential."""
-    if route_name not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
-        return None
-    return MatrixRoute(scheme.system, variety, scheme.time_step)
+        if route_name in _SCALAR and (entry := closed_form(form)):
+            return ScalarRoute(system, cast(NormalForm, form), entry, h)
+        if route_name in _SECULAR and SecularRoute.covers(form):
+            return SecularRoute(system, cast(NormalForm, form), h)
+        if route_name in _MATRIX and not (variety := variety_of(system, scheme.constraint)).exponential:
+            return MatrixRoute(system, variety, h)
+    return DefinitionRoute(system, h, scheme.difference, scheme.constraint, scheme.order)

@@ -20,7 +20,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import weights
 from nonholo.discrete._variety import variety_of
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, plain, poses_of
+from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, plain, poses_of
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -59,7 +59,7 @@ class ComposedRoute(AbstractOuterRoute):
         return self.substep
 
 
-def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
+def forced_route(free: AbstractCompiledRoute, forced: Forced) -> AbstractCompiledRoute:
     """Return the route of a system with forces, by kicks at the nodes, around that of the free one."""
     if forced.forces is None:
         return free
@@ -69,12 +69,12 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
         raise error("discretize(order=...)", "be 2 where forces act at the nodes", got, remedy)
     inside = free.compiled_route
     if inside is None or forced.is_spatial:
-        return FunctionRoute(cast(AbstractCompiledRoute, free), forced)
+        return FunctionRoute(free, forced)
     return ForcedRoute(inside, forced)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class AbstractForcedRoute(AbstractRoute):
+class AbstractForcedRoute(AbstractOuterRoute):
     """A route whose steps depend on their numbers: there is none from a state alone.
 
     Attributes:
@@ -86,26 +86,20 @@ class AbstractForcedRoute(AbstractRoute):
     free: AbstractCompiledRoute
     forced: Forced
     faults: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
-
-    @property
-    def single(self) -> AbstractCompiledRoute:
-        """The route of the free step."""
-        return self.free
+    part_needs_pose: ClassVar[bool] = True
+    single = property(attrgetter("free"))
 
     @property
     def needs_pose(self) -> bool:
         """Whether it carries a pose along even where none is kept."""
         return self.free.needs_pose or self.forced.potential is not None or self.forced.function is not None
 
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
-        r"""Return momenta, charts and poses after fractions s of the steps from states; NaN where none starts.
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
+        """Return the kernel's momenta, chart and pose after a fraction s of a step; None where there is no such step.
 
         Half the impulse of the part acts at each of its ends, at times t and t + s h, both of the row of the step. So
         at s = 1 it is the step itself.
         """
-        return parts_by(self.free, self._part, poses_of(states, is_needed=True), states, fractions)
-
-    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         half, free = float(self.free.time_step) / 2, self.free
         end = time + fraction * 2 * half
         with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
@@ -141,7 +135,7 @@ class AbstractForcedRoute(AbstractRoute):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
+class ForcedRoute(AbstractForcedRoute):
     """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python."""
 
     @property
@@ -159,7 +153,7 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
+class FunctionRoute(AbstractForcedRoute):
     """In Python, by the definition of the impulses: for constraints fixed in space, and steps by the definition.
 
     Its state is that of the free step, one step ahead, and the number of the step.
@@ -345,7 +339,7 @@ def balanced_route(free: Any, matrix: Callable[[], Any], forced: Forced, order: 
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
+class BalancedRoute(AbstractForcedRoute):
     """Equal half impulses at the displacement, by which T + U and every balance is exact; in one or several stages.
 
     Attributes:

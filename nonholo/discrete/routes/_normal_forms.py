@@ -149,9 +149,9 @@ class SecularRoute(AbstractCompiledRoute):
     needs_pose: ClassVar[bool] = False
 
     @staticmethod
-    def covers(form: NormalForm) -> bool:
+    def covers(form: NormalForm | None) -> bool:
         """Return whether a body is one of this route."""
-        return not form.is_planar or form.is_diagonal
+        return form is not None and (not form.is_planar or form.is_diagonal)
 
     @functools.cached_property
     def body(self) -> kernels.SecularBody:
@@ -187,7 +187,8 @@ class SecularRoute(AbstractCompiledRoute):
 
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the matrices of poses of the kernel's axes, row by row."""
-        g = self.axes.turn(self.system.group.matrix_from_pose(poses))
+        g, frame = self.system.group.matrix_from_pose(poses), self.axes.frame
+        g = g if frame is None else g @ frame
         g = g if self._turn is None else g @ self._turn
         return g.reshape(*poses.shape[:-1], self.system.group.size**2)
 
@@ -196,7 +197,8 @@ class SecularRoute(AbstractCompiledRoute):
         size = self.system.group.size
         g = poses.reshape(*poses.shape[:-1], size, size)
         g = g if self._turn is None else g @ self._turn.T
-        return self.system.group.pose_from_matrix(self.axes.turn_back(g))
+        g = g if self.axes.frame is None else g @ self.system.group.inverse(self.axes.frame)
+        return self.system.group.pose_from_matrix(g)
 
     @functools.cached_property
     def _turn(self) -> Float[np.ndarray, "N N"] | None:

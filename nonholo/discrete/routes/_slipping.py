@@ -22,7 +22,7 @@ from nonholo.discrete._variety import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems import Contacts, Forced, Widened, friction, update_slope
+from nonholo.systems import Forced, Widened, friction, update_slope
 
 _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
@@ -85,11 +85,6 @@ class SlipRoute(AbstractForcedRoute):
         """The name of the route of steps that hold."""
         return self.hold.name
 
-    @property
-    def contacts(self) -> Contacts:
-        """The contacts whose rows may yield."""
-        return self.forced.contacts
-
     @functools.cached_property
     def body(self) -> Widened:
         """The body without the rows."""
@@ -128,7 +123,7 @@ class SlipRoute(AbstractForcedRoute):
     def grips(self, moving: Float[np.ndarray, "s"]) -> Float[np.ndarray, "contacts"]:
         """Return the largest impulses by which contacts hold: by the grip, and the viscous friction of what ends."""
         h = float(self.holding.time_step)
-        each = self.contacts.each
+        each = self.forced.contacts.each
         return np.array([h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in each])
 
     def begin(self, r: np.ndarray, pose: np.ndarray, time: float, step: int) -> Beginning:
@@ -141,22 +136,22 @@ class SlipRoute(AbstractForcedRoute):
             return Beginning(code, self.wide(chart))
         impulses = self.reaction(chart[None], own_pose[None], np.array([step])) - r[k:]
         most = self.grips(np.linalg.solve(self.body.slip_inertia, r[k:]))
-        if (self.contacts.sizes(impulses) <= most).all():
+        if (self.forced.contacts.sizes(impulses) <= most).all():
             return Beginning(0, self.wide(chart), kernel)
         return self._yield((r, pose), (time, step, 1.0), impulses[0], most)
 
     def _yield(self, now: Here, when: When, impulses: np.ndarray, most: np.ndarray) -> Beginning:
         """Begin a step in which not every contact holds; those that do are at rest where impulses act on M alone."""
         (r, pose), half, s = now, float(self.holding.time_step) / 2, len(impulses)
-        laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.contacts.each, strict=True)]
-        rests = ~self.contacts.sizes(friction(self.body.slip_inertia, -impulses, laws)[0][None])[0].astype(bool)
+        laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.forced.contacts.each, strict=True)]
+        rests = ~self.forced.contacts.sizes(friction(self.body.slip_inertia, -impulses, laws)[0][None])[0].astype(bool)
         while True:
-            start = np.append(r[:-s], self.contacts.stop(r[-s:], rests))
+            start = np.append(r[:-s], self.forced.contacts.stop(r[-s:], rests))
             turning = impulses - (2 * start[-s:] - r[-s:])
             beginning = self.slide((start, pose), when, rests, turning, np.zeros_like(turning))
             if beginning.code != 0:
                 return beginning
-            yields = rests & (self.contacts.sizes((beginning.impulse + start[-s:] - r[-s:])[None])[0] > most)
+            yields = rests & (self.forced.contacts.sizes((beginning.impulse + start[-s:] - r[-s:])[None])[0] > most)
             if not yields.any():
                 return beginning
             rests = rests & ~yields
@@ -170,8 +165,8 @@ class SlipRoute(AbstractForcedRoute):
         hold have no slip, by any impulse.
         """
         part, before = when[2] * float(self.holding.time_step), np.inf
-        grips = np.where(rests, np.inf, [part * float(one.grip) for _, one in self.contacts.each])
-        laws = [(at, most, one.viscous) for most, (at, one) in zip(grips, self.contacts.each, strict=True)]
+        grips = np.where(rests, np.inf, [part * float(one.grip) for _, one in self.forced.contacts.each])
+        laws = [(at, most, one.viscous) for most, (at, one) in zip(grips, self.forced.contacts.each, strict=True)]
         slope, way, goal = 2 / part * self.body.slip_inertia, np.ones(len(impulse)), impulse
         if slip is not None:
             way, goal = friction(slope, slope @ slip - impulse, laws)
@@ -194,9 +189,9 @@ class SlipRoute(AbstractForcedRoute):
 
     def _rest(self, after: np.ndarray, start: np.ndarray, way: np.ndarray) -> None:
         """Clear the momenta after a step of what rounding adds: where it has no slip, velocities turn over."""
-        s, rests = len(way), ~self.contacts.sizes(way[None])[0].astype(bool)
-        later = self.contacts.stop(start[-s:] + after[-s:], rests) - start[-s:]
-        places = self.contacts.places(rests)
+        s, rests = len(way), ~self.forced.contacts.sizes(way[None])[0].astype(bool)
+        later = self.forced.contacts.stop(start[-s:] + after[-s:], rests) - start[-s:]
+        places = self.forced.contacts.places(rests)
         after[-s:][places] = later[places]
 
     def _push(self, now: Here, when: When, impulse: np.ndarray) -> Beginning:
@@ -243,7 +238,7 @@ class SlipRoute(AbstractForcedRoute):
             return np.append(momenta[0], np.zeros(len(r) - k)), ends[0]
         if fraction == 1:
             return whole.after
-        start = np.append(r[:k], self.contacts.stop(r[k:], whole.rests)), pose
+        start = np.append(r[:k], self.forced.contacts.stop(r[k:], whole.rests)), pose
         beginning = self.slide(start, (*when, fraction), whole.rests, fraction * whole.impulse)
         return beginning.after if beginning.code == 0 else (nothing, np.full_like(pose, np.nan))
 
@@ -319,7 +314,7 @@ class SlipStepper(AbstractBodyStepper):
         good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
         m, charts, poses = (column[:good] for column in rows)
         impulses = self.route.reaction(charts, poses, number + np.arange(good))
-        fits = self.route.contacts.sizes(impulses) <= self.route.grips(np.zeros(impulses.shape[1]))
+        fits = self.route.forced.contacts.sizes(impulses) <= self.route.grips(np.zeros(impulses.shape[1]))
         ends = np.flatnonzero(~fits.all(axis=1))
         momenta = np.concatenate([hold.decode(m), np.zeros((good, len(r) - m.shape[1]))], axis=1)
         states = momenta, self.route.wide(charts), hold.decode_poses(poses)

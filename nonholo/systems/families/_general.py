@@ -148,12 +148,6 @@ class LLSystem(AbstractLLSystem):
         tensor = _mass.mass_tensor_of_body("LLSystem", mass, inertia, center_of_mass, group)
         return cls(group, tensor, constraint_subspace, annihilator=annihilator)
 
-    def __repr__(self) -> str:
-        operator = {"inertia operator": np.asarray(self.given_inertia)}
-        facts = operator if self.mass_tensor is None else _mass.tensors_shown(self.group, self.mass_tensor)
-        subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LLSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
-
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
@@ -235,11 +229,6 @@ class LRSystem(AbstractLRSystem):
         self._hold(self.group, tensor, rows, covectors)
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
-    def __repr__(self) -> str:
-        facts = _mass.tensors_shown(self.group, self.mass_tensor)
-        subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LRSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
-
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class VeselovaTop(AbstractLRSystem):
@@ -272,9 +261,6 @@ class VeselovaTop(AbstractLRSystem):
         where = "VeselovaTop(mass_tensor=...)"
         self._hold(_mass.body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor."))
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
-
-    def __repr__(self) -> str:
-        return f"VeselovaTop({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def group(self) -> AbstractMatrixGroup:

@@ -85,9 +85,6 @@ class RigidBody(AbstractLLSystem):
         """
         return cls(_mass.mass_tensor_of_body("RigidBody", mass, inertia, center_of_mass, group), group)
 
-    def __repr__(self) -> str:
-        return f"RigidBody({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
-
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
