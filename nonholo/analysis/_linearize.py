@@ -16,7 +16,13 @@ from nonholo.base.types import Bool, Float, Inexact, Int
 from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, extent_of
+from nonholo.systems import (
+    AbstractCoordinateDiscretization,
+    AbstractCoordinateSystem,
+    AbstractSystem,
+    extent_of,
+    refuse_slip,
+)
 
 _CHOICES = 1000  # of velocities
 _SHARE = 0.05  # least singular value of the dependent columns of constraints, orthonormal in units of equal energy
@@ -501,6 +507,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     """
     as_orbit(_WHERE, orbit, "of one in coordinates take `orbit.tangent`.")
     discrete, system = orbit.motion, orbit.system
+    refuse_slip(_WHERE, system)
     if orbit.has_impacts.any():
         raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow):

@@ -114,7 +114,8 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
         >>> result = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
     where = "load_sweep(store=...)"
-    if not (sweep_store := open_store(checked_path(where, store))).is_finished:
+    sweep_store = open_store(checked_path(where, store))
+    if not sweep_store.is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
     sweep_store.check(where, range(sweep_store.layout.blocks))

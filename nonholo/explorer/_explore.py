@@ -138,7 +138,8 @@ def shown_motion(where: str, value: Any) -> Shown:
         value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
-    if not (orbit := any_orbit(where, value)).has_poses or not len(orbit):
+    orbit = any_orbit(where, value)
+    if not orbit.has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
     return (_live(orbit) if isinstance(orbit, Orbit) else None) or _replay(orbit)

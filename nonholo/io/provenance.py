@@ -11,7 +11,6 @@ import importlib
 import json
 import platform
 from collections.abc import Callable, Mapping
-from importlib import resources
 from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated, Any, Literal
 
@@ -203,8 +202,28 @@ _MOTIONS: dict[str, Callable[..., Any]] = {
     "ContinuousFlow": ContinuousFlow,
     "MeasuredMotion": MeasuredMotion,
 }
-_TEXTS = (resources.files("nonholo.io") / "conventions.txt").read_text("utf-8").split("\n\n")
-_CONVENTIONS, _IN_COORDINATES = (" ".join(words.split()) for words in _TEXTS)
+_CONVENTIONS = (
+    "W_k = g_k^-1 g_(k+1), P_k is the momentum at W_k, momenta are physical (L_d includes time_step). Arrays are in "
+    "the user's body frame; quaternions are unit, scalar first, Hamilton's product, and take body coordinates to "
+    "space. The group canonical holds what runs continue from, in the canonical body frame of the system. "
+    "reduced_momentum: along the constraint subspace; for a right-invariant constraint (LR systems) that of the "
+    "spatial momentum. cayley: coordinates y of the displacement along rows S, "
+    "W = retract(2 y S), the Cayley map on SO(n), SE(n) and groups with a form, else exp; S are the rows of the "
+    "constraint subspace or, "
+    "where y has dim components, all of the algebra; for LR systems of the spatial displacement "
+    "U_k = g_(k+1) g_k^-1. pose: unit quaternion, scalar first, on SO(3); (cos, sin, x, y) on SE(2); rotation matrix "
+    "row by row on SO(n), followed by the position on SE(n); vector of translations; matrix row by row on other "
+    "groups; factors one after another. se(2) coordinates are (omega, v1, v2), so(3) the usual vector, so(n) the "
+    "coefficients of e_i ^ e_j, i < j, se(n) those of so(n), then v; the pairing is the dot product."
+)
+
+
+_IN_COORDINATES = (
+    "Arrays are what the orbit tells (docstrings of nonholo.lagrange_dalembert.CoordinateOrbit, GroupOrbit): "
+    "displacement, momentum, energy and constraint_residual are those of the single step from each state, multipliers "
+    "the impulses of that step, NaN where it was not taken; body_velocity is displacement / time_step, on a group its "
+    "logarithm. Of a flow they are those at its times."
+)
 
 
 def attributes(orbit: AbstractOrbit) -> dict[str, Any]:

@@ -296,7 +296,8 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
 
 def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     """Return the same of an orbit with poses."""
-    if (orbit := drawable(where, orbit)).canonical_pose is None:
+    orbit = drawable(where, orbit)
+    if orbit.canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return orbit
 

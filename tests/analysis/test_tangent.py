@@ -210,13 +210,16 @@ def test_tangent_maps_by_functions_on_a_group() -> None:
 
 
 def test_other_orbits_are_refused() -> None:
-    """Orbits without a tangent map say what has one: thinned ones, and those under a force that is a function."""
+    """Orbits without a tangent map say what has one: thinned, under a force that is a function, with rows that yield."""
     sleigh = BODIES["offset sleigh"]
     thinned = nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=4, save_every=2)
     own = nh.discretize(nh.Forced(sleigh, force=lambda *_: np.zeros(3)), 0.1)
     pushed = nh.simulate(own, restricted_velocity=(0.1, 0.2), steps=4)
     ready = nh.examples.particle().simulate(steps=4, save_every=2)
-    for orbit, words in ((thinned, "every step"), (pushed, "rollout"), (ready, "every step")):
+    slipping = nh.discretize(nh.Forced(sleigh, force=nh.Slip([[0.0, 0.0, 1.0]], grip=0.5)), 0.1)
+    slid = nh.simulate(slipping, restricted_velocity=(0.1, 0.2, 0.3), steps=4)
+    cases = (thinned, "every step"), (pushed, "rollout"), (ready, "every step"), (slid, "never yields")
+    for orbit, words in cases:
         with pytest.raises(ValueError, match=words):
             _ = orbit.tangent
     with pytest.raises(ValueError, match="have a step"):

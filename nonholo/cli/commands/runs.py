@@ -146,7 +146,8 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
             check_target(store, overwrite=True)
             io.places.remove_store(store)
         return at_free_path(request.name, store, lambda path: _run(task, store=path, scenario=text))
-    if (ran := _run(task)).orbit is None:
+    ran = _run(task)
+    if ran.orbit is None:
         return None, ran
     orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
     path, _ = at_free_path(request.name, store, lambda at: io.save_orbit(orbit, at, overwrite=replace, scenario=text))

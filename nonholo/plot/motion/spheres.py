@@ -89,7 +89,8 @@ def body_axis_track(
         (True, True)
     """
     where = "body_axis_track(orbit=...)"
-    if (orbit := parts.orbit_with_poses(where, orbit)).system.group != SO(3):
+    orbit = parts.orbit_with_poses(where, orbit)
+    if orbit.system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
     flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)
     gamma = _body_axis(orbit, body_axis)
@@ -118,7 +119,8 @@ def _body_axis(orbit: Orbit, vector: Any) -> Float[np.ndarray, "3"]:
         forbidden = parts.forbidden_axis(orbit.system)
         vector = (0.0, 0.0, 1.0) if forbidden is None else forbidden
     where, remedy = "body_axis_track(body_axis=...)", "Pass a vector in body coordinates."
-    if not (axis := array(where, vector, (3,), remedy)).any():
+    axis = array(where, vector, (3,), remedy)
+    if not axis.any():
         raise error(where, "have a direction", "the vector 0", remedy)
     return axis / np.linalg.norm(axis)
 

@@ -123,8 +123,11 @@ _MOST_DOTS = 2000
 _COLUMNS = 600
 _EPS = float(np.finfo(np.float64).eps)
 _VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
-_EXPECTED: Any = {True: "exact by theorem, up to rounding", False: "not exact for this discretization"}
-_EXPECTED[None] = "error of the solver"
+_EXPECTED = {
+    True: "exact by theorem, up to rounding",
+    False: "not exact for this discretization",
+    None: "error of the solver",
+}
 _THINNED = "includes the work of forces, which a thinned run does not record"
 
 
@@ -171,7 +174,8 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    if not (orbit := drawable_in_time("energy_error(orbit=...)", orbit)).has_poses and orbit.system.is_spatial:
+    orbit = drawable_in_time("energy_error(orbit=...)", orbit)
+    if not orbit.has_poses and orbit.system.is_spatial:
         orbit_with_poses("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())

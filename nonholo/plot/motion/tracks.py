@@ -215,7 +215,8 @@ def point_track(
         (31, 3)
     """
     where = "point_track(orbit=...)"
-    if (orbit := parts.drawable_in_time(where, orbit)).coordinates:
+    orbit = parts.drawable_in_time(where, orbit)
+    if orbit.coordinates:
         return _in_coordinates(where, orbit, axes, flow)
     orbit = parts.orbit_with_poses(where, orbit)
     group = orbit.system.group
