@@ -205,7 +205,8 @@ def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
     def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:
         (x, v, force), still = row, jnp.zeros(2 * n)
         A, B = jax.jacfwd(after, (0, 1))(still, force, x, v)
-        sizes = jnp.outer(jnp.array([h, 1.0]), _units(system, x, v)).ravel()  # so that units do not matter
+        unit = equations.acceleration_matrix(system, x, v)[1].velocity
+        sizes = jnp.outer(jnp.array([h, 1.0]), unit).ravel()  # so that units do not matter
         across = jax.jacfwd(limits)(still, x, v) * sizes
         return A - (A * sizes) @ jnp.linalg.pinv(across) @ (across / sizes), B
 

@@ -210,7 +210,7 @@ def test_tangent_maps_by_functions_on_a_group() -> None:
 
 
 def test_other_orbits_are_refused() -> None:
-    """Orbits without a tangent map say what has one: thinned, under a force that is a function, with rows that yield."""
+    """Orbits without a tangent map say what has one: thinned, under a function as force, with rows that yield."""
     sleigh = BODIES["offset sleigh"]
     thinned = nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=4, save_every=2)
     own = nh.discretize(nh.Forced(sleigh, force=lambda *_: np.zeros(3)), 0.1)

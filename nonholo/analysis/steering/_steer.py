@@ -68,7 +68,7 @@ class Steering(Keeper):
 
 def driven(motion: Any, start: tuple[np.ndarray, np.ndarray], controls: Float[np.ndarray, "steps dim"]) -> Any:
     """Return the orbit under forces that act besides those of the system, as far as it goes."""
-    velocity = {"body_velocity" if in_coordinates(motion) else "restricted_velocity": start[0]}
+    velocity: Any = {"body_velocity" if in_coordinates(motion) else "restricted_velocity": start[0]}
     motion = dataclasses.replace(motion, system=Forced(motion.system, force=controls))
     return simulate(motion, configuration=start[1], **velocity, steps=len(controls), throw=False)
 

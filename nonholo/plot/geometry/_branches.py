@@ -19,7 +19,7 @@ from nonholo.analysis import Deltoid, deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.base.checks import choice, error, instance, pair, shape_of, shown
 from nonholo.base.types import Float
-from nonholo.discrete import Branches, BranchTree, Discretization
+from nonholo.discrete import Branches, BranchTree, Discretization, branching
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
 from nonholo.plot.parts import draw_orbit, own_orbit
@@ -186,13 +186,13 @@ def branches(
     """
     discrete = planar_map("plot.branches(discrete=...)", discrete)[0]
     on_momenta = _is_over_momenta(discrete, plane)
-    values = maps.branches(discrete, momentum=momentum, displacement=displacement)
+    values = branching.branches(discrete, momentum=momentum, displacement=displacement)
     if displacement is not None:
         W = np.asarray(displacement, dtype=float)
     elif shape_of(momentum) == (discrete.system.group.dim,):
-        W = maps.inverse_discrete_legendre(discrete, momentum)
+        W = branching.inverse_discrete_legendre(discrete, momentum)
     else:
-        over = maps.displacements_over(discrete, momentum)
+        over = branching.displacements_over(discrete, momentum)
         W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
     return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)

@@ -128,11 +128,11 @@ class Forced(AbstractSystem):
         return system.forced(potential, force)
 
     def __post_init__(self) -> None:
-        inside = self.system
+        inside: Any = self.system
         if not isinstance(inside, AbstractSystem):
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
             raise error("Forced(system=...)", "be a system on a group", shown(inside), remedy)
-        if inside.is_forced:
+        if isinstance(inside, Forced):
             refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
             force = _friction.force_of(_friction.with_later_parts(inside, self.force))
             scheme = self.scheme or inside.scheme
