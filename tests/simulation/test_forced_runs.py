@@ -99,7 +99,8 @@ _REFUSED: list[Callable[[], Any]] = [
     lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic", order=4),
     lambda: nh.flow(_FORCED, restricted_velocity=[0.5, -0.3], times=(0.0, 1.0), method="closed_form"),
     lambda: nh.flow(nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)),
-    lambda: nh.Forced(_FORCED),
+    lambda: nh.Forced(_FORCED, force=RUB),
+    lambda: nh.Forced(_FORCED, SLOPE),
     lambda: nh.Forced(3),  # type: ignore[arg-type]
     lambda: nh.Forced(TOP, 3.0),
     lambda: nh.Forced(TOP, SLOPE),

@@ -54,8 +54,8 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
 
 def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
     """Return all that an orbit tells."""
-    told = ((str(name), x) for name, x in none.to_dataset().data_vars.items() if name in none.rows())
-    variables: dict[str, Any] = {name: (("member", *x.dims), getattr(ensemble, name), x.attrs) for name, x in told}
+    columns = ((str(name), x) for name, x in none.to_dataset().data_vars.items() if name in none.rows())
+    variables: dict[str, Any] = {name: (("member", *x.dims), getattr(ensemble, name), x.attrs) for name, x in columns}
     if not none.coordinates:
         variables |= io.datasets.posed(none.space, ensemble.configuration, "member")
     return variables
