@@ -101,7 +101,7 @@ def _stays(watch: Watch, there: Orbit) -> bool:
     speed = watch.rate_toward(name, there)
     end, rate = next(_rates_ahead(watch, there, name), (there, speed))
     time = end.time[0] - there.time[0]
-    return rate > speed and speed**2 * time <= 2 * (rate - speed) * watch.lowest_bounce(name, there)
+    return bool(rate > speed and speed**2 * time <= 2 * (rate - speed) * watch.lowest_bounce(name, there))
 
 
 def _rates_ahead(watch: Watch, there: Orbit, name: str) -> Iterator[tuple[Orbit, float]]:
