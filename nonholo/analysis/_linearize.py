@@ -294,6 +294,7 @@ _MOST = 50  # corrections
 _CLOSE = 1e-13  # of the extent of a state, for the last one
 _RANK = 1e-10  # of the largest singular value
 _STABLE = 1e-7  # of the largest eigenvalue: rounding moves double ones by its root
+_AT_REST = 1e-6  # of a velocity, what is left where corrections lead to rest
 
 
 @result
@@ -333,6 +334,7 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
     where, state = "equilibria(configuration=...)", (configuration, body_velocity)
     is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
     flow: Any = system.system if is_map else system  # the map rests where the flow does
+    fastest = 0.0
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", flow, *state)
         if not np.isfinite(local.slope[0]).all():
@@ -346,10 +348,15 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
         matrix, defect = _balance(local._replace(frame=None) if is_rest else local, equations)
         is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
         change = equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect))
+        speed = np.abs(local.state / equations.units)[local.places :].max(initial=0.0)
+        fastest = max(fastest, speed)
         state = beside(-change[: local.places], -change[local.places :])
         if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
+            if speed < _AT_REST * fastest and not is_rest:
+                remedy = "Guess closer to one, or leave body_velocity out."
+                raise error(where, "be near a steady motion", "one from which corrections lead to rest", remedy)
             return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(where, "be near a steady motion", got, "Guess closer to one.")

@@ -149,7 +149,7 @@ def _of_field(system: "AbstractLLSystem", field: QuadraticField) -> Equilibria:
     zeros = field.zeros()
     if zeros is None:
         got = f"{system.rank}, in which velocities change"
-        remedy = "Equilibria of more are zeros of quadratic equations that this version does not solve."
+        remedy = "Look for one near a velocity: nh.equilibria(system, body_velocity=...)."
         where = f"{type(system).__name__}.equilibria()"
         raise error(where, "have a constraint with at most three admissible directions", got, remedy)
     if len(zeros[0]) == system.rank:

@@ -171,6 +171,11 @@ REFUSED = {
         {"configuration": [0.0]},
         "must be near a steady motion",
     ),
+    "a pendulum that swings": (
+        nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.cos(q[0]), None, dimension=1),
+        {"configuration": [0.3], "body_velocity": [0.3]},
+        "corrections lead to rest",
+    ),
     "an energy": (hoop(), {"configuration": [0.0, 0.0], "energy": 2.0}, "must be left out beside a configuration"),
     "no configuration": (hoop(), {}, "configuration= to look near"),
     "a moving joint at rest": (hoop(), {"configuration": [0.0, 0.0]}, "must satisfy the constraint"),
