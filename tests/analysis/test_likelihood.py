@@ -48,6 +48,23 @@ def test_a_single_number_of_a_kind_has_no_steps() -> None:
     assert search.outcome_of(search.run(np.zeros(2)), np.ones(2), np.full(2, 0.1)) == "converged"
 
 
+@pytest.mark.parametrize("guess", [4.0, 5.5, 7.5, 10.0])
+def test_swings_out_of_step_are_found(guess: float) -> None:
+    """Sixteen swings of a frequency 2 pi that is far from the guess are fitted to their noise."""
+    time = np.linspace(0.0, 16.0, 321)
+    y = np.sin(2 * np.pi * time) + np.random.default_rng(1).normal(scale=1e-3, size=321)
+
+    def missed(numbers: np.ndarray, _starts: object, _poses: object, kinds: dict) -> dict:
+        (w, a), none = numbers, np.zeros((1, len(time), 1, 0))
+        slope = -np.stack([a * time * np.cos(w * time), np.sin(w * time)], axis=-1)
+        return {"rate": (kinds["rate"] - a * np.sin(w * time)[None, :, None], slope[None, :, None], none)}
+
+    problem = Problem(missed, np.zeros((1, 3, 3)), {"rate": y[None, :, None]}, 2, (1, 0))
+    found = Search(problem, FREE, lambda _: None, "linear", np.array([np.nan])).run(np.array([guess, 1.0]))
+    np.testing.assert_allclose(found.point, [2 * np.pi, 1.0], atol=2e-4)
+    np.testing.assert_allclose(found.noise, 1e-3, rtol=0.1)
+
+
 def test_levels_have_the_largest_restricted_likelihood() -> None:
     """Seven numbers of one kind and forty of another: levels are where the restricted likelihood is largest."""
     rng, few = np.random.default_rng(5), 7

@@ -132,7 +132,8 @@ def fit(
 
     For small samples of a kind (seven headings) the covariance has the correction of Kenward and Roger, and the
     `degrees` of freedom of the intervals follow Satterthwaite's formula. The search uses only parameters for which
-    `system_of` returns a body. `Fit.outcome` records how it ended.
+    `system_of` returns a body. A search that is lost begins again over the first part of the record, which grows: so a
+    swing whose model has another frequency is not out of step. `Fit.outcome` records how it ended.
 
     A free motion does not determine the unit of mass. Fix one mass; otherwise the fit raises an error.
 

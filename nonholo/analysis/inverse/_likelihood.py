@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -69,6 +70,14 @@ class Problem:
                 whole[i, ..., self.count + i * width : self.count + (i + 1) * width] = by_starts[i]
             parts.append(whole[there])
         return np.concatenate(parts)
+
+    def beginning(self, share: float) -> "Problem":
+        """Return the problem of the first part of the record."""
+        kinds = {}
+        for kind, rows in self.kinds.items():
+            kinds[kind] = rows.copy()
+            kinds[kind][:, math.ceil(share * rows.shape[1]) :] = np.nan
+        return dataclasses.replace(self, kinds=kinds, last=None)
 
     @functools.cached_property
     def kind_of(self) -> np.ndarray:
@@ -170,9 +179,10 @@ _COARSE, _FINE = 1e-6, 1e-12  # relative tolerances of the search, before the le
 _SETTLED = 1e-4  # relative change of noise levels
 _FAR = 10.0  # times its guess, where a parameter that the record does not tell has gone to infinity
 _MISSED = 1e-3  # cosine between the residuals and what changes them, where a minimum has not been reached
-_LOST = 4.0  # times the noise: residuals that are none
+_DOUBTFUL, _LOST = 2.0, 4.0  # times the noise: residuals that may be none, and that are none
 _PART = 0.01  # of the largest number: residuals below it may be those of a good model, without noise
 _MEDIAN = 0.6744897501960817  # of the size of normal numbers
+_PARTS = 1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2  # of the record, over which a lost search begins again
 _EXACT = 1e-10  # of the largest measured number of a kind: less noise than that is rounding
 
 
@@ -207,6 +217,22 @@ class Search(NamedTuple):
     levels: np.ndarray
 
     def run(self, point: np.ndarray) -> Solution:
+        """Return the best point with its noise levels; if residuals look like none, from those of parts of the record.
+
+        Over a short time a model with other parameters has not got out of step with the motion.
+        """
+        solution = self.settle(point)
+        if not self._misses(solution.point, _DOUBTFUL):
+            return solution
+        for problem in map(self.problem.beginning, _PARTS):
+            if list(problem.there) == list(self.problem.there) and len(problem.kind_of) > len(point):
+                part = self._replace(problem=problem)
+                nearer = part.least(point, solution.noise, _COARSE)
+                point = point if part._misses(nearer, _DOUBTFUL) else nearer
+        again = self.settle(point) if np.isfinite(self.problem.rows(point)).all() else solution
+        return solution if self._misses(again.point, _DOUBTFUL) else again
+
+    def settle(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
         is_known, kinds = np.isfinite(self.levels), self.problem.kinds
         least = [_EXACT * np.abs(kinds[kind][..., :3][there]).max() for kind, there in self.problem.there.items()]
@@ -271,22 +297,25 @@ class Search(NamedTuple):
 
     def outcome_of(self, solution: Solution, guess: np.ndarray, errors: np.ndarray) -> str:
         """Return in a word what became of a search: see `Fit.outcome`."""
-        problem, values = self.problem, solution.point[: self.problem.count]
+        values = solution.point[: self.problem.count]
         far = (np.abs(values) > _FAR * np.abs(guess)) & (guess != 0) & (errors > 100 * np.abs(values))
-        if far.any() or any(self._is_lost(solution, kind) for kind in problem.there):
+        if far.any() or self._misses(solution.point, _LOST):
             return "lost"
         return "converged" if solution.is_settled else "not_converged"
 
-    def _is_lost(self, solution: Solution, kind: str) -> bool:
+    def _misses(self, point: np.ndarray, times: float) -> bool:
         """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
-        there, rows = self.problem.there[kind], self.problem.at(solution.point)[kind][0]
+        return any(self._misses_kind(point, times, kind) for kind in self.problem.there)
+
+    def _misses_kind(self, point: np.ndarray, times: float, kind: str) -> bool:
+        there, rows = self.problem.there[kind], self.problem.at(point)[kind][0]
         columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
         typical, step = _deviation(columns), _deviation([np.diff(column) / np.sqrt(2) for column in columns])
         level = float(self.levels[list(self.problem.there).index(kind)])
         if np.isfinite(level):
-            return typical > _LOST * level
+            return typical > times * level
         most = 1.0 if kind == "turn" else float(np.abs(self.problem.kinds[kind][there]).max())
-        return (typical > _LOST * step and typical > _PART * most) or (kind == "turn" and typical > most)
+        return (typical > times * step and typical > _PART * most) or (kind == "turn" and typical > most)
 
 
 def _deviation(parts: list[np.ndarray]) -> float:
