@@ -294,7 +294,7 @@ _MOST = 50  # corrections
 _CLOSE = 1e-13  # of the extent of a state, for the last one
 _RANK = 1e-10  # of the largest singular value
 _STABLE = 1e-7  # of the largest eigenvalue: rounding moves double ones by its root
-_AT_REST = 1e-6  # of a velocity, what is left where corrections lead to rest
+_AT_REST = 1e-3  # of a velocity, below which corrections have led to rest
 
 
 @result

@@ -55,8 +55,17 @@ def test_a_way_of_least_effort_counts_more_than_a_smaller_miss(monkeypatch: pyte
     """A start that comes nearer to the goal, at no minimum of the cost, does not hide a later one at a minimum."""
     ends = iter([([[2.0]], [[1e-12]], [1.0]), ([[1.0]], [[1e-10]], [0.0])])
     monkeypatch.setattr(_shooting, "least_effort", lambda *_: tuple(map(np.array, next(ends))))
-    forces, missed, is_least = _shooting.best(lambda f, _: (f, f), np.ones((1, 1)), (-np.ones(1), np.ones(1)))
+    forces, missed, is_least = _shooting.best(lambda f, _: (f + 1, f), np.ones((1, 1)), (-np.ones(1), np.ones(1)))
     assert (forces.item(), missed.item(), is_least.item()) == (1.0, 1e-10, True)
+
+
+@pytest.mark.parametrize("low", [-1.0, 0.0, 0.5])
+def test_a_goal_that_is_met_without_forces_costs_nothing(low: float) -> None:
+    """No local minimum with forces is taken for the least, where bounds allow none."""
+    gaps = lambda f, _: (f.sum(axis=1, keepdims=True), np.ones((len(f), 1, 2)))  # noqa: E731
+    forces, missed, is_least = _shooting.best(gaps, np.ones((1, 2)), (np.full(2, low), np.ones(2)))
+    assert is_least.item() == (missed.item() == 0) == (low <= 0)
+    assert (forces == 0).all() == (low <= 0)
 
 
 def test_members_begin_where_they_do_without_others(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -70,7 +79,7 @@ def test_members_begin_where_they_do_without_others(monkeypatch: pytest.MonkeyPa
             return f, np.array([[other], [1.0]])[-len(f) :], np.zeros(len(f))
 
         monkeypatch.setattr(_shooting, "least_effort", attempt)
-        _shooting.best(lambda f, _: (f, f), np.ones((2, 1)), (-np.ones(1), np.ones(1)))
+        _shooting.best(lambda f, _: (f + 1, f), np.ones((2, 1)), (-np.ones(1), np.ones(1)))
         return firsts
 
     assert begins(0.0) == begins(1.0)

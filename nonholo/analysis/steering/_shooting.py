@@ -294,17 +294,20 @@ def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np
 
     Each member has a separate random stream, so that no other one changes where it begins.
     """
-    left, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
-    ends: Any = None
+    everyone, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
+    nothing = np.clip(np.zeros_like(size), *limits)
+    misses = gaps(nothing, everyone)[0]
+    is_least = (_largest(misses) < _MET) & ~nothing.any(axis=1)  # no effort at all
+    ends = nothing, np.where(is_least[:, None], misses, np.inf), is_least
+    left = everyone[~is_least]
     for spread in SPREAD:
+        if not len(left):
+            break
         first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
         near, misses, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
         least = ((gap := _largest(misses)) < TOLERANCE) & (rest < _GRADIENT)
-        ends = ends or (np.zeros_like(size), np.full_like(misses, np.inf), np.zeros_like(least))
         better = least | (gap < _largest(ends[1][left]))
         for whole, part in zip(ends, (near, misses, least), strict=True):
             whole[left[better]] = part[better]
         left = np.flatnonzero(~ends[2])
-        if not len(left):
-            break
     return ends
