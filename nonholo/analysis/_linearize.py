@@ -413,7 +413,7 @@ def critical_values(
         >>> bool(np.allclose(found, 2 * np.sqrt(1.2 * 9.81 * 0.3), rtol=1e-9))
         True
     """
-    function("critical_values(linearization=...)", linearization)
+    function("critical_values(linearization=...)", linearization, "value")
     where, remedy = "critical_values(interval=...)", "Pass the least and the largest value."
     low, high = array(where, interval, (2,), remedy)
     if not low < high:

@@ -318,10 +318,31 @@ def instance(where: str, value: Any, kind: type[Kind], requirement: str, remedy:
     return value
 
 
-def function(where: str, value: Any) -> None:
-    """Refuse what cannot be called."""
+def function(where: str, value: Any, *arguments: str) -> None:
+    """Refuse what cannot be called, or does not take the arguments that are named.
+
+    Example:
+        >>> function("Forced(force=...)", lambda t, g: g, "time", "configuration", "body_velocity")
+        Traceback (most recent call last):
+        ...
+        ValueError: `Forced(force=...)` must take (time, configuration, body_velocity). Got `<lambda>(t, g)`. ...
+    """
     if not callable(value):
         raise error(where, "be a function", shown(value), "Pass a function.")
+    if arguments and not takes(value, len(arguments)):
+        got = f"`{getattr(value, '__name__', type(value).__name__)}{inspect.signature(value)}`"
+        raise error(where, f"take ({', '.join(arguments)})", got, "Write it with these arguments.")
+
+
+def takes(function: Callable[..., Any], count: int) -> bool:
+    """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    try:
+        inspect.signature(function).bind(*range(count))
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True
 
 
 def text(where: str, value: Any) -> str:

@@ -144,7 +144,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     where = "consistency_defect(discretization_map=...)"
     own = {"matrix": lambda W: group.vee(W - group.identity), "logarithmic": group.log}
     if discretization_map is not None:
-        function(where, discretization_map)
+        function(where, discretization_map, "W")
         velocities = of_jax.map_each(discretization_map, of_jax.sample_displacements(discrete, _SAMPLES))
     elif callable(discrete.difference):
         got = "none, with a callable difference"

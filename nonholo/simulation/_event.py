@@ -12,7 +12,19 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import call, check_result, numbers_of
-from nonholo.base.checks import array, assign, checked_name, choice, error, instance, is_name, natural, number, shown
+from nonholo.base.checks import (
+    array,
+    assign,
+    checked_name,
+    choice,
+    error,
+    function,
+    instance,
+    is_name,
+    natural,
+    number,
+    shown,
+)
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences
@@ -227,8 +239,7 @@ class Event:
     reset: Impact | None = None
 
     def __post_init__(self) -> None:
-        if not callable(self.function):
-            raise error("Event(function=...)", "be a function of an orbit", shown(self.function), "Pass a function.")
+        function("Event(function=...)", self.function, "orbit")
         remedy = "1 is from below, -1 from above, 0 both."
         assign(self, direction=choice("Event(direction=...)", self.direction, (-1, 0, 1), remedy))
         if self.name is not None:

@@ -131,7 +131,7 @@ def roll(
         as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
         run, arguments = _roll_out, _on_group
     if policy is not None:
-        function(f"{owner}(policy=...)", policy)
+        function(f"{owner}(policy=...)", policy, "time", "state")
         if controls is not None:
             raise error(
                 f"{owner}(policy=...)", "be left out beside controls", "both", "Add the controls in the policy."

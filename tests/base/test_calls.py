@@ -6,6 +6,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 
@@ -179,3 +180,13 @@ def test_one_number_that_is_not_finite_is_seen(number: float, steps: int, place:
     assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.successful
     momenta[place, 1] = number
     assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.nonfinite
+
+
+# Functions with other arguments are refused where they are passed, with their own.
+test_functions_take_what_they_are_called_with = refusals(
+    (lambda: nh.Forced(SLEIGH, force=pose_cut), r"take \(time, configuration, body_velocity\). Got `pose_cut\(g: "),
+    (lambda: nh.Forced(SLEIGH, velocity_set), r"take \(configuration\)"),
+    (lambda: nh.Event(velocity_set), r"take \(orbit\)"),
+    (lambda: nh.fit(velocity_set, {}, {"a": 1.0}), r"take \(parameters\)"),
+    (lambda: nh.critical_values(velocity_set, (0.0, 1.0)), r"take \(value\)"),
+)

@@ -158,7 +158,7 @@ def test_a_network_learns() -> None:
 # A policy that gives no body covector, or stands beside controls, is refused before any work.
 test_bad_policies_are_refused = refusals(
     ({"policy": lambda *_: np.zeros(2)}, r"return an array of shape \(3,\). Got shape \(2,\)"),
-    ({"policy": lambda _: np.zeros(3)}, "be traceable by JAX on a time and a state"),
+    ({"policy": lambda _: np.zeros(3)}, r"take \(time, state\)"),
     ({"policy": wavy, "controls": np.zeros((3, 3))}, "be left out beside controls"),
     ({"policy": 1.0}, "be a function"),
     ask=lambda given: nh.rollout(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.1, 0.2), steps=3, **given),

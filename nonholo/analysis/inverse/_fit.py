@@ -185,7 +185,7 @@ def fit(
         >>> low < 0.4 < high
         True
     """
-    function("fit(system_of=...)", system_of)
+    function("fit(system_of=...)", system_of, "parameters")
     choice("fit(loss=...)", loss, LOSSES)
     numbers, shapes = _vector(guess)
     ranges = _ranges(bounds, shapes, numbers)

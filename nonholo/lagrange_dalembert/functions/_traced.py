@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, shown, takes
 from nonholo.base.numerics import double_precision
 from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array, Float, Int
@@ -39,7 +39,7 @@ def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> Tra
 
 def _check_parameters(where: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """Refuse a function that does not take the parameters of its system, last."""
-    if isinstance(arguments[-1], dict) and not _binds(function, count := len(arguments)):
+    if isinstance(arguments[-1], dict) and not takes(function, count := len(arguments)):
         got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
         raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
@@ -127,26 +127,15 @@ class TwoPoint:
 
 def with_time_step(function: Any, others: int) -> Any:
     """Return a function of (q, q_next, time_step) and others: itself, or one without the time step wrapped."""
-    is_shorter = callable(function) and _binds(function, 2 + others) and not _binds(function, 3 + others)
+    is_shorter = callable(function) and takes(function, 2 + others) and not takes(function, 3 + others)
     return TwoPoint(function) if is_shorter else function
 
 
 def with_parameters(function: Any, others: int) -> Any:
     """Return a function of others and parameters: itself, or one that does without them wrapped."""
-    if not callable(function) or _binds(function, others + 1):
+    if not callable(function) or takes(function, others + 1):
         return function
     return lambda *arguments: function(*arguments[:-1])
-
-
-def _binds(function: Callable[..., Any], count: int) -> bool:
-    """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
-    try:
-        inspect.signature(function).bind(*range(count))
-    except TypeError:
-        return False
-    except ValueError:
-        return True
-    return True
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, assign, choice, error, refuse_given, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, function, refuse_given, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -141,7 +141,9 @@ class Forced(AbstractSystem):
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
-            if not callable(each):
+            if callable(each):
+                function("Forced(potential=...)", each, "configuration")
+            else:
                 each.check(inside.group)
         assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
         assign(self, force=_friction.force_of(self._checked_parts()))
@@ -152,6 +154,8 @@ class Forced(AbstractSystem):
         if "friction" in parts:
             parts["friction"].check(inside.group.dim)
         _ = self.free  # refused here where rows do not fit
+        if "function" in parts:
+            function("Forced(force=...)", parts["function"], "time", "configuration", "body_velocity")
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
