@@ -10,7 +10,7 @@ from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
-from nonholo.systems._mass import WideInertia, arrow_numbers, arrowhead, refuse_negative
+from nonholo.systems._mass import WideInertia, arrow_numbers, arrowhead, refuse_negative, with_mass
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import sleigh_rows
 
@@ -186,9 +186,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor about the reference point in homogeneous coordinates."""
         xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
-        a = xp.asarray(self.center_of_mass)
-        lever = xp.concatenate([a, xp.ones_like(a[:1])])
-        return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
+        return with_mass(xp.asarray(self.mass_tensor), self.mass, xp.asarray(self.center_of_mass))
 
     @system_memo
     def inertia_along(self) -> Float[Array, "n n"]:
@@ -196,9 +194,8 @@ class MultidimensionalSleigh(AbstractLLSystem):
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
         xp = (m * a @ J).__array_namespace__()
         J, a = xp.asarray(J), xp.asarray(a)
-        lever = xp.concatenate([a[1:], xp.ones_like(a[:1])])
         turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
-        return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
+        return with_mass(turning, m, a[1:])
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:

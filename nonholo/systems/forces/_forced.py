@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, assign, choice, error, refuse_given, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, instance, refuse_given, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -128,23 +128,21 @@ class Forced(AbstractSystem):
         return system.forced(potential, force)
 
     def __post_init__(self) -> None:
-        inside: Any = self.system
-        if not isinstance(inside, AbstractSystem):
-            remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
-            raise error("Forced(system=...)", "be a system on a group", shown(inside), remedy)
-        if isinstance(inside, Forced):
-            refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
-            force = _friction.force_of(_friction.with_later_parts(inside, self.force))
-            scheme = self.scheme or inside.scheme
-            assign(self, system=inside.system, potential=inside.potential, force=force, scheme=scheme)
-            inside = self.system
+        remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
+        system = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
+        self._hold(*system.add_forces(self.potential, self.force, self.scheme))
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
             if not callable(each):
-                each.check(inside.group)
+                each.check(self.system.group)
         assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
         assign(self, force=_friction.force_of(self._checked_parts()))
+
+    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
+        """Return the fields of the system with a table that comes later; other forces are refused."""
+        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
+        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
@@ -352,11 +350,17 @@ class Forced(AbstractSystem):
         where, remedy = "Forced(force=...)", "Return a body covector."
         return numbers_of(where, self.function, (self.group.dim,), remedy, float(time), configuration, body_velocity)
 
+    @property
+    def all_rows(self) -> Float[Array, "K dim"]:
+        """The rows of the table, and a last one of zeros."""
+        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
+        xp = table.__array_namespace__()
+        return xp.concatenate([table, xp.zeros((1, self.group.dim))])
+
     def rows(self, steps: np.ndarray) -> Float[Array, "K dim"]:
         """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
-        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
-        after = table.__array_namespace__().zeros((1, self.group.dim))
-        return table.__array_namespace__().concatenate([table, after])[np.minimum(steps, len(table))]
+        rows = self.all_rows
+        return rows[np.minimum(steps, len(rows) - 1)]
 
     def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""

@@ -275,14 +275,14 @@ def force_of(parts: dict[str, Any]) -> Any:
     return forces if len(forces) > 1 else forces[0] if forces else None
 
 
-def with_later_parts(system: Any, force: Any) -> dict[str, Any]:
-    """Return the parts of the force of a system and of one that comes later: beside others a table, which is added."""
+def with_later_force(system: Any, force: Any) -> Any:
+    """Return the force of a system with one that comes later: beside others a table, which is added."""
     own, parts = parts_of(system.force), parts_of(force)
     tables = [each["table"] for each in (own, parts) if "table" in each]
     if own and parts and (parts.keys() != {"table"} or np.shape(tables[0]) != np.shape(tables[-1])):
         remedy = "Pass all forces at once; a table alone may come later."
         raise error("Forced(system=...)", "have no force yet", shown(system), remedy)
-    return own | parts | ({"table": functools.reduce(operator.add, tables)} if tables else {})
+    return force_of(own | parts | ({"table": functools.reduce(operator.add, tables)} if tables else {}))
 
 
 def refuse_table(where: str, table: Any) -> None:
