@@ -99,7 +99,7 @@ class CompiledStepper(AbstractBodyStepper):
 
     @property
     def sizes(self) -> tuple[int, int, int]:
-        """Those of the kernel, which may have no pose."""
+        """Numbers of momenta and chart coordinates of the kernel, and of pose entries, which may be none."""
         momenta, charts, pose = self.route.sizes
         return momenta, charts, pose if self.with_poses or self.route.needs_pose else 0
 

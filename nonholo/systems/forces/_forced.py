@@ -297,7 +297,8 @@ class Forced(AbstractSystem):
         g = self._at(configuration)
         if not self.terms:
             return np.zeros((*g.shape[:-2], self.group.dim))
-        covectors = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
+        group = self.group
+        covectors = (_each(self._slope, g, group.dim) if callable(x) else x.covector(group, g) for x in self.terms)
         return functools.reduce(operator.add, covectors)
 
     def mean_force(self, g: Poses, W: Poses, h: Array, constant: Covectors, time: Any = None) -> Covectors:
@@ -324,8 +325,9 @@ class Forced(AbstractSystem):
             return f
         middle = g @ group.exp(group.log(W) / 2)
         if self.own_potential is not None:
-            f = f + self._mean_slope(g, W, X, _each(self._slope, middle))
-        return f + np.array([self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)])
+            f = f + self._mean_slope(g, W, X, _each(self._slope, middle, group.dim))
+        driving = [self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)]
+        return f + np.reshape(driving, f.shape)
 
     def _mean_slope(self, g: np.ndarray, W: np.ndarray, X: np.ndarray, pull: np.ndarray) -> np.ndarray:
         """Return -G of the function, from -dU in the middle."""
@@ -460,10 +462,9 @@ def central_differences(dim: int) -> tuple[Float[np.ndarray, "dim orders 2 dim"]
     return np.stack([offsets, -offsets], axis=2), _DIFFERENCES
 
 
-def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
-    """Return the values of a function of one matrix at all of them."""
-    values = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
-    return values.reshape((*g.shape[:-2], *values.shape[1:]))
+def _each(function: Callable[[np.ndarray], Any], g: np.ndarray, *shape: int) -> np.ndarray:
+    """Return the values of a function of one matrix at all of them, or at none."""
+    return np.reshape([function(each) for each in g.reshape(-1, *g.shape[-2:])], (*g.shape[:-2], *shape))
 
 
 def midpoint_impulse(
