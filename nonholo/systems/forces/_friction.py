@@ -182,6 +182,16 @@ class Widened(AbstractLLSystem):
     leaves: ClassVar[tuple[str, ...]] = ("system",)
     structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
 
+    def __post_init__(self) -> None:
+        """Refuse a slip without inertia, as that of a rod about itself."""
+        if is_traced(self.inertia_operator):
+            return
+        terms = np.abs(self.duals) @ np.abs(self.inertia_operator) @ np.abs(self.duals).T
+        units = np.sqrt(np.maximum(terms.diagonal(), np.finfo(np.float64).tiny))
+        if not np.abs(np.linalg.eigvalsh(self.slip_inertia / units / units[:, None])).min() > _ROUNDING:
+            got, remedy = f"inertia {self.slip_inertia.tolist()}", "Leave the slip out, or give the body this inertia."
+            raise error("Forced(force=Slip(...))", "have an inertia along the rows that yield", got, remedy)
+
     group = property(operator.attrgetter("system.group"))  # type: ignore[assignment]
     homogeneous_mass_tensor = property(operator.attrgetter("system.homogeneous_mass_tensor"))
     inertia_operator = property(operator.attrgetter("system.inertia_operator"))
