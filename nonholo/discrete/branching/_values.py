@@ -176,10 +176,8 @@ def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values of a step under forces over a restricted momentum in the user's frame."""
     canonical = node.free.system.to_canonical(r)
     roots = _roots_of(node.free, node.frame, node.equations(canonical))
-    values = branches_of(node.free, node.frame, canonical, roots)
-    code, increment = node.principal(canonical)
-    principal = _index_of(node.free, node.frame, code, increment, roots.increments, values.is_real)
-    return dataclasses.replace(values, region=np.full(len(values), ""), principal=principal)
+    values = branches_of(node.free, node.frame, canonical, roots, node.principal(canonical))
+    return dataclasses.replace(values, region=np.full(len(values), ""))
 
 
 class Roots(NamedTuple):
@@ -202,9 +200,9 @@ def _roots_of(discrete: Discretization, frame: AnyFrame, equations: Equations) -
 
 
 def branches_of(
-    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots
+    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots, principal: Any = None
 ) -> Branches:
-    """Return what is known of the displacements over a canonical restricted momentum."""
+    """Return what is known of the displacements over a canonical momentum; the principal one may be known."""
     system = cast(AbstractLLSystem, discrete.system)
     equations, zeros, X = roots
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
@@ -217,7 +215,7 @@ def branches_of(
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, frame, *principal_increment(discrete, canonical), X, is_real),
+        principal=_index_of(discrete, frame, *(principal or principal_increment(discrete, canonical)), X, is_real),
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
@@ -414,15 +412,16 @@ def branches(
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
         raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
-    group, where = discrete.system.group, "branches(displacement=...)"
+    where = "branches(momentum=...)"
     if displacement is not None:
-        W, _ = checked_point(where, discrete if node is None else node.free, frame, displacement)
-        X = W - group.identity
-    elif node is not None:
-        where = "branches(momentum=...)"
-        X = _increment(where, discrete, values_at(node, _restricted(where, discrete, momentum)))
+        free = discrete if node is None else node.free
+        W, _ = checked_point("branches(displacement=...)", free, frame, displacement)
+        X = W - discrete.system.group.identity
+    elif node is None and shape_of(momentum) != (discrete.system.rank,):
+        X = _inverse(where, discrete, frame, momentum)
     else:
-        X = _before("branches(momentum=...)", discrete, frame, momentum)
+        r = _restricted(where, discrete, momentum)
+        X = _increment(where, discrete, values_over(discrete, frame, r) if node is None else values_at(node, r))
     if node is not None:
         return values_at(*node.following(X))
     r = discrete.system.restrict(legendre(discrete, X, "right"))
@@ -495,13 +494,6 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
 def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
     k = len(discrete.system.constraint_subspace)
     return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
-
-
-def _before(where: str, discrete: Discretization, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
-    """Return the displacement minus the identity that a full or restricted momentum belongs to."""
-    if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
-        return _inverse(where, discrete, frame, momentum)
-    return _increment(where, discrete, values_over(discrete, frame, _restricted(where, discrete, momentum)))
 
 
 def _increment(where: str, discrete: Discretization, values: Branches) -> Float[np.ndarray, "N N"]:

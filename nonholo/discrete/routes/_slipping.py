@@ -92,7 +92,7 @@ class SlipRoute(AbstractForcedRoute):
 
     @functools.cached_property
     def variety(self) -> Variety:
-        """The route of steps that slide."""
+        """The variety of steps that slide."""
         return variety_of(self.body, "skew")
 
     @functools.cached_property
