@@ -22,7 +22,7 @@ from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import definition_of
-from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, narrow, reach_of, refuse_slip
+from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, reach_of, refuse_slip, refuse_wide
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -37,7 +37,7 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
     is_map = isinstance(subject, Discretization)
     system: Any = subject.system if is_map else subject
     _refuse(f"{owner}(system=...)", system)
-    narrow(f"Full vectors of {system.group}", system.group.dim)
+    refuse_wide(system.group)
     still = np.zeros(system.group.dim)
     start = Start.of(owner, configuration, body_velocity=still if velocity is None else velocity)
     g = start.pose(system.group)

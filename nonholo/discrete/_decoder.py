@@ -27,18 +27,16 @@ class DisplacementDecoder:
 
     def momentum(self, charts: Float[np.ndarray, "K m"], side: str) -> Float[np.ndarray, "K dim"]:
         """Return the momenta that set out (side "left") or arrive ("right")."""
-        discrete, system = self.discrete, self.discrete.system
-        group, canonical, back = system.group, system.canonical, system.group.inverse(system.frame)
-        X = discrete.variety.increment(charts)
+        discrete, system, X = self.discrete, self.discrete.system, self.discrete.variety.increment(charts)
+        group, canonical = system.group, system.canonical
         if discrete.difference == "matrix":
             reduced = matrix_legendre(group, canonical.homogeneous_mass_tensor, X, side) / discrete.time_step
-            return reduced if canonical is system else group.coadjoint(back, reduced)
-        return legendre(discrete, system.frame @ X @ back, side)
+            return reduced if canonical is system else group.coadjoint(group.inverse(system.frame), reduced)
+        return legendre(discrete, system.from_canonical_frame(X), side)
 
     def displacement(self, charts: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the displacements as matrices."""
-        frame = self.discrete.system.frame
-        return frame @ self.discrete.variety.displaced(charts) @ self.discrete.system.group.inverse(frame)
+        return self.discrete.system.from_canonical_frame(self.discrete.variety.displaced(charts))
 
     def multipliers(self, charts: Charts, following: Charts) -> Float[np.ndarray, "K s"]:
         """Return the impulses between displacements and those that follow."""

@@ -12,7 +12,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weights
+from nonholo.discrete._scheme import Scheme, legendre, refuse_composition
 from nonholo.discrete._variety import definition, equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractCompiledRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
@@ -58,13 +58,9 @@ class Discretization(Scheme, AbstractMotion):
         """The decoder of the displacements of its single steps."""
         return displacement_decoder(self, self.decoder)
 
-    @functools.cached_property
-    def _steppers(self) -> tuple[AbstractBodyStepper, ...]:
-        return tuple(self.route.stepper(self, with_poses=with_poses) for with_poses in (False, True))
-
     def stepper(self, *, with_poses: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
-        return self._steppers[bool(with_poses)]
+        return self.route.stepper(self, with_poses=bool(with_poses))
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a run whose rows have poses or not: one may be large."""
@@ -189,7 +185,7 @@ class Discretization(Scheme, AbstractMotion):
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
-        first = self if self.order == 2 else self._first
+        first = self.first_part
         momentum = first._momentum(states, states.canonical_chart, "left")
         if self.forces is None:
             return momentum
@@ -199,11 +195,6 @@ class Discretization(Scheme, AbstractMotion):
         body = cast(Widened, self.forces.free)
         slip = states.restricted_momentum[:, -len(body.rows) :]
         return momentum - (applied(body.duals, momentum) - slip) @ body.rows
-
-    @functools.cached_property
-    def _first(self) -> "Discretization":
-        """The first step of order 2 of a composition."""
-        return self.part(weights(self.order)[0])
 
     def mean_force(self, states: Orbit, forced: Forced | None = None) -> Float[np.ndarray, "K dim"]:
         """Return the covectors f that act over single steps from states, where forces are balanced."""
@@ -264,7 +255,7 @@ class Discretization(Scheme, AbstractMotion):
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration
-        jump = _in_body(self, after.canonical_chart, g, "left") - arriving
+        jump = self._momentum_at(g, after.canonical_chart, "left") - arriving
         return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
 
     def _next_states(self, before: Orbit, after: Orbit) -> Orbit:
@@ -287,13 +278,12 @@ class Discretization(Scheme, AbstractMotion):
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
         if self.system.is_spatial:
-            return _in_body(self, cayley, states.configuration, side)
+            return self._momentum_at(states.configuration, cayley, side)
         return self.displacement_decoder.momentum(cayley, side)
 
-
-def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: str) -> np.ndarray:
-    """Return the momenta of spatial displacements U at poses g: those of W = g^-1 U g."""
-    return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
+    def _momentum_at(self, g: np.ndarray, cayley: np.ndarray, side: str) -> np.ndarray:
+        """Return the momenta of displacements from poses."""
+        return legendre(self, self.system.in_body(self.variety.increment(cayley), g), side)
 
 
 def as_discretization(where: str, value: Any, *, compositions: bool = False, forced: bool = False) -> Discretization:
@@ -346,8 +336,7 @@ def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement:
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
         remedy = "Build it as `group.exp(x)` with x admissible."
     else:
-        canonical = group.inverse(system.frame) @ in_frame @ system.frame
-        forbidden, what = equations_of(discrete.variety, canonical), "equations with residual"
+        forbidden, what = equations_of(discrete.variety, system.to_canonical_frame(in_frame)), "equations with residual"
         remedy = "Start from a velocity, or take a row of `orbit.displacement`: exp d is not this variety."
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
         got = f"{what} {np.array2string(forbidden, precision=6)}"

@@ -68,8 +68,7 @@ class MeasuredMotion(AbstractMotion):
 
     def _increments(self, chart: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return displacements less the identity, without cancellation."""
-        frame, group = self.system.frame, self.system.group
-        return frame @ group.exp_increment(chart[..., :-1]) @ group.inverse(frame)
+        return self.system.from_canonical_frame(self.system.group.exp_increment(chart[..., :-1]))
 
 
 def orbit_of_poses(system: Any, time: Any, configuration: Any) -> Orbit:

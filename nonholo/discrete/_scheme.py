@@ -59,6 +59,11 @@ class Scheme:
         """Return the step of order 2 whose length is a share of that of a step."""
         return dataclasses.replace(self, time_step=share * self.time_step, order=2)
 
+    @functools.cached_property
+    def first_part(self) -> Any:
+        """The first step of order 2 of a composition; the scheme itself, if it is one."""
+        return self if self.order == 2 else self.part(float(weights(self.order)[0]))
+
 
 def legendre(discrete: Scheme, increment: Inexact[Array, "... N N"], side: str) -> Inexact[Array, "... dim"]:
     """Return the momenta of displacements given as W - I."""

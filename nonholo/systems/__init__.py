@@ -34,8 +34,8 @@ from nonholo.systems._mass import (
     inertia_from_mass_tensor,
     inertia_tensor,
     mass_tensor_from_inertia,
-    narrow,
     reach_of,
+    refuse_wide,
 )
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start, refuse_in_coordinates
@@ -75,7 +75,7 @@ from nonholo.systems.forces import (
     slips_of,
     terms_of,
     update_slope,
-    with_later_parts,
+    with_later_force,
     without_slips,
 )
 

@@ -159,6 +159,14 @@ class AbstractSystem(Keeper, abc.ABC):
         reduced = self._along("reduced_momentum", reduced_momentum)
         return reduced if self.canonical is self else applied(self.inverse_frame_map, reduced)
 
+    def to_canonical_frame(self, displacement: Array) -> Array:
+        """Return a displacement, or a velocity as a matrix, as seen from the canonical frame."""
+        return self.group.inverse(self.frame) @ displacement @ self.frame
+
+    def from_canonical_frame(self, displacement: Array) -> Array:
+        """Return what is seen from the canonical frame as seen from the user's."""
+        return self.frame @ displacement @ self.group.inverse(self.frame)
+
     @system_memo
     def inertia_along(self) -> Float[Array, "... k k"] | WideInertia:
         r"""The inertia along the rows of the constraint subspace, $S\,\mathbb{I}\,S^T$; its parts if too large."""
@@ -182,6 +190,10 @@ class AbstractSystem(Keeper, abc.ABC):
     def forces(self) -> Any:
         """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
+
+    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple["AbstractSystem", Any, Any, Any]:
+        """Return the fields of a `Forced`: the body inside, and all that acts on it by a scheme."""
+        return self, potential, force, scheme
 
     @property
     def inside(self) -> "AbstractSystem":

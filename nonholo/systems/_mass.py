@@ -31,6 +31,11 @@ def narrow(where: str, components: int) -> None:
         raise error(where, f"have at most {LARGEST} components", f"{components}", remedy)
 
 
+def refuse_wide(group: AbstractMatrixGroup) -> None:
+    """Refuse to make vectors of all components on a group of large dimension."""
+    narrow(f"Full vectors of {group}", group.dim)
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class WideInertia:
     r"""An inertia along the constraint that is known without its matrix: $w\cdot Dw + m(v + \alpha\cdot w)^2$.
@@ -279,8 +284,14 @@ def mass_tensor_of_body(owner: str, mass: Any, inertia: Any, center_of_mass: Any
     a, tensor = xp.asarray(a), xp.asarray(tensor)
     if not slides:
         return tensor + m * a[:, None] * a
-    lever = xp.concatenate([a, xp.ones_like(a[:1])])
-    return xp.pad(tensor, ((0, 1), (0, 1))) + m * lever[:, None] * lever
+    return with_mass(tensor, m, a)
+
+
+def with_mass(tensor: Float[Array, "k k"], mass: Array, center: Float[Array, "k"]) -> Float[Array, "k+1 k+1"]:
+    r"""Return a form about a center with one more row, that of the mass there: $J + m\,(a, 1)(a, 1)^T$."""
+    xp = center.__array_namespace__()
+    lever = xp.concatenate([center, xp.ones_like(center[:1])])
+    return xp.pad(tensor, ((0, 1), (0, 1))) + mass * lever[:, None] * lever
 
 
 def possible(where: str, mass_tensor: Float[Array, "n n"], depth: int = 3) -> Float[Array, "n n"]:

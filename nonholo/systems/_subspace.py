@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import array, dimension, error, is_traced, within_memory
 from nonholo.base.types import Array, Float, read_only
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._mass import checked_group, narrow
+from nonholo.systems._mass import checked_group, refuse_wide
 
 _ROUNDING = 64 * np.finfo(np.float64).eps  # times the larger side of a matrix: singular values below it count as zero
 
@@ -108,7 +108,7 @@ def sleigh_rows(group: AbstractMatrixGroup) -> Float[np.ndarray, "n dim"]:
 
 def _plane_rows(group: AbstractMatrixGroup, planes: list) -> Float[np.ndarray, "k dim"]:
     r"""Return the coordinates of $e_i\wedge e_j = e_ie_j^T - e_je_i^T$ for pairs (i, j) counted from 0."""
-    narrow(f"Full vectors of {group}", group.dim)
+    refuse_wide(group)
     wedge = np.zeros((len(planes), group.size, group.size))
     for row, (i, j) in enumerate(planes):
         wedge[row, i, j], wedge[row, j, i] = 1.0, -1.0

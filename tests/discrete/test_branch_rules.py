@@ -22,6 +22,7 @@ ROD = nh.discretize(nh.SuslovTop(np.outer([1.0, 0.5, 0.4], [1.0, 0.5, 0.4]) + np
 ROUND = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 2.0])), 1.0)
 FOUR_REAL = 2 * FOUR.system.constrained_inertia @ np.array([-0.25, -0.375]) / (1 + 0.0625 + 0.140625)  # an equilibrium
 MOTION = nh.discretize(nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), 0.3)
+BODY, HALF = nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1), np.diag([-1.0, -1.0, 1.0])
 
 
 KINDS = {"top": TOP, "four": FOUR, "sleigh": SLEIGH, "motion": MOTION}
@@ -221,5 +222,6 @@ test_rules_that_do_not_apply_are_refused = refusals(
     ({"discrete": TOP, "branch": "largest", "backend": "jax"}, "must be 'auto'. Got 'jax' with branch 'largest'"),
     ({"discrete": TOP, "branch": lambda *_: 2}, "must return the index of a real branch or None. Got 2"),
     ({"discrete": TOP, "branch": "nearest", "momentum": [0.1, 0.2, 9.0]}, "must lie on the momentum locus"),
+    ({"discrete": BODY, "branch": "nearest", "momentum": None, "displacement": HALF}, "must turn by less than a half"),
     ask=lambda given: nh.simulate(**{"momentum": [0.2, 0.3], "steps": 2} | given),
 )

@@ -26,7 +26,7 @@ _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _TURNED = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))
 _ENCLOSED = {
     "top": (nh.discretize(nh.SuslovTop(_TENSOR), 0.5), [0.4, 0.7]),
-    "top on SO(4)": (nh.discretize(nh.SuslovTop(np.diag([1.0, 1.2, 2.0, 0.7]) + 0.1), 0.5), [0.4, 0.7, -0.3]),
+    "arrowhead": (nh.discretize(nh.SuslovTop.arrowhead([1.0, 1.2, 2.0, 0.7], [0.1, 0.2, -0.1]), 0.5), [0.4, 0.7, -0.3]),
     "sleigh": (nh.discretize(nh.ChaplyginSleigh(1.5, 1.2, -0.4), 0.5), [0.8, -0.3]),
     "sleigh on SE(3)": (
         nh.discretize(nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], _TENSOR), 0.7),
@@ -59,7 +59,7 @@ def _exact(discrete: nh.Discretization, r: list[float], W: np.ndarray) -> mpmath
     return displaced(tuple(mpmath.findroot(defect, [mpmath.mpc(x) for x in start], tol=1e-60)))
 
 
-@pytest.mark.profile("problems", keep=["top", "sleigh"])
+@pytest.mark.profile("problems", keep=["top", "arrowhead", "sleigh"])
 @pytest.mark.parametrize(("discrete", "r"), _ENCLOSED.values(), ids=_ENCLOSED)
 def test_enclosures_hold_the_displacements(discrete: nh.Discretization, r: list[float]) -> None:
     """Each 40-digit root of the matrix equations lies in its enclosure, which is a few roundings wide."""

@@ -203,7 +203,7 @@ def test_the_fold_distance_is_that_of_the_momenta() -> None:
     assert 0 < expected < 0.999
 
 
-_WIDE, _KNOWN = "must have matrices of at most 5 rows and a constraint of rank at most 4", "must have a mass tensor"
+_WIDE, _KNOWN = "must have matrices of at most 5 rows and a constraint of rank 1 to 4", "must have a mass tensor"
 # A step that is no polynomial, matrices that are too large, and half-turns off the variety are refused with the reason.
 test_what_has_no_values_is_refused = refusals(
     (
@@ -211,6 +211,7 @@ test_what_has_no_values_is_refused = refusals(
         f"{_WIDE}.*4 rows and rank 6",
     ),
     (lambda: nh.displacements_over(_body("SO(6)", 1), [0.1]), f"{_WIDE}.*6 rows and rank 1"),
+    (lambda: nh.displacements_over(_body("SO(3)", 0), []), f"{_WIDE}.*3 rows and rank 0"),
     (lambda: nh.fold_distance(_body("SO(2,1)", 1), np.diag([-1.0, -1.0, 1.0])), "must lie on the displacement var"),
     (lambda: nh.branch_tree(nh.discretize(nh.RigidBody(np.eye(3)), H, "logarithmic"), np.eye(3), 1), _KNOWN),
 )

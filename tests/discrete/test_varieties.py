@@ -130,7 +130,8 @@ def test_whether_a_discrete_lagrangian_is_even() -> None:
     assert nh.discretize(TOP, 0.1, "logarithmic").is_self_adjoint
 
 
-# Each with what it must be, before any work.
+ON_HEISENBERG = {"system": OTHERS["Heisenberg"]}
+# Each with what it must be, before any work; on the Heisenberg group with what would define it.
 test_bad_choices_are_refused = refusals(
     ({"constraint": "skewed"}, "must be one of"),
     ({"constraint": lambda W: W[0, 2]}, "tangent to d"),
@@ -145,21 +146,14 @@ test_bad_choices_are_refused = refusals(
     ({"difference": lambda W: W}, "real scalar function"),
     ({"difference": lambda W: jnp.sqrt(jnp.sum((W - jnp.eye(3)) ** 2))}, "differentiable"),
     ({"difference": lambda W, h: jnp.trace(W) / h}, "real scalar function"),
-    ask=lambda option: nh.discretize(TOP, 0.1, **option),
-)
-
-
-ON_HEISENBERG = OTHERS["Heisenberg"]
-# On the Heisenberg group the other names have no meaning; the reasons say what would define them.
-test_what_is_undefined_on_a_group_is_refused = refusals(
-    ({"difference": "matrix"}, r"difference=.*be defined for the system.*MatrixGroup\(form="),
-    ({"constraint": "skew"}, r"constraint=.*be defined on the group.*MatrixGroup\(basis, form=G\)"),
-    ask=lambda option: nh.discretize(ON_HEISENBERG, 0.1, **option),
+    (ON_HEISENBERG | {"difference": "matrix"}, r"difference=.*be defined for the system.*MatrixGroup\(form="),
+    (ON_HEISENBERG | {"constraint": "skew"}, r"constraint=.*be defined on the group.*MatrixGroup\(basis, form=G\)"),
+    ask=lambda option: nh.discretize(**{"system": TOP, "time_step": 0.1} | option),
 )
 
 
 def test_defaults_on_a_group_without_a_form() -> None:
     """They are logarithmic and exponential, and do not keep the energy."""
-    discrete = nh.discretize(ON_HEISENBERG, 0.1)
+    discrete = nh.discretize(**ON_HEISENBERG, time_step=0.1)
     assert (discrete.difference, discrete.constraint) == ("logarithmic", "exponential")
     assert not discrete.conserves_energy

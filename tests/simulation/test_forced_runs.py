@@ -33,6 +33,15 @@ def _brake(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
     return -time * w
 
 
+@pytest.mark.parametrize("scheme", ["energy", "variational"])
+def test_an_orbit_without_states_has_columns_without_rows(scheme: str) -> None:
+    """As after a run whose functions are undefined at its start."""
+    forced = nh.Forced(TOP, lambda _: np.nan, lambda *_: np.full(3, np.nan), scheme)
+    orbit = nh.simulate(nh.discretize(forced, 0.1), **START, steps=3, throw=False)
+    shapes = [getattr(orbit, name).shape for name in ("momentum", "multipliers", "work")]
+    assert shapes == [(0, 3), (0, 1), (0,)]
+
+
 def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     """A store names neither functions nor anything else than our systems and forces; a function has to be passed."""
     discrete = nh.discretize(nh.Forced(TOP, force=_brake), 0.05)

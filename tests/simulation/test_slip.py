@@ -335,6 +335,7 @@ test_what_has_no_slip_is_refused = refusals(
     (lambda: nh.Forced(nh.VeselovaTop(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "fixed in the body"),
     (lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)), "rows of 1 numbers"),
     (lambda: nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 1.0), nh.Slip(BLADE, 1.0))), "independent rows"),
+    (lambda: nh.Forced(nh.SuslovTop(np.diag([0, 0, 1.0])), force=nh.Slip(AXIS, 1.0)), "have an inertia along the rows"),
     (lambda: nh.Slip(BLADE, -1.0), "never add energy"),
     (lambda: nh.Slip(BLADE, 1.0, -1.0), "never add energy"),
     (lambda: nh.Slip(BLADE, 1.0, np.inf), "be finite"),

@@ -243,8 +243,8 @@ class Node:
         still = dataclasses.replace(forced, force=None).mean_force(poses, W, h, row)
         along = forced.to_canonical(forced.restrict(still))
         if forced.friction is not None:
-            Y = self.free.system.frame @ group.hat(self.free.variety.chart) @ group.inverse(self.free.system.frame)
-            drag = forced.to_canonical(forced.restrict(-forced.friction.covector(group.vee(Y)))).T
+            velocities = group.vee(forced.from_canonical_frame(group.hat(self.free.variety.chart)))
+            drag = forced.to_canonical(forced.restrict(-forced.friction.covector(velocities))).T
         return h / 2 * along[0], h / 2 * (along[1:] - along[0]).T, drag
 
     def principal(self, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:

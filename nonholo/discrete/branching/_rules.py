@@ -7,7 +7,6 @@ displacement variety, where nothing is special at angle $\pi$.
 
 import abc
 import dataclasses
-import functools
 from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
@@ -69,9 +68,23 @@ class AbstractBranchRule(abc.ABC):
     is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
+    @property
+    def argument(self) -> BranchRule:
+        """The argument `branch` that asks for it: a name, or a function."""
+        return self.name
+
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
-        _check_values_known(where, discrete, getattr(self, "function", self.name))
+        self._check_left_invariant(where, discrete)
+        if not has_frame(discrete):
+            got = f"{shown(self.argument)} for {type(discrete.system).__name__}, of whose values not all are known"
+            remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
+            raise error(where, "be 'principal' or 'nearest'", got, remedy)
+
+    def _check_left_invariant(self, where: str, discrete: Discretization) -> None:
+        if discrete.system.is_spatial:
+            changing = "a right-invariant constraint, whose equations change with the pose from step to step"
+            raise error(where, "be 'principal'", f"{shown(self.argument)} for {changing}", "Leave it out.")
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
@@ -108,7 +121,7 @@ class Nearest(AbstractBranchRule):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Every left-invariant constraint has it."""
-        _check_left_invariant(where, discrete, self.name)
+        self._check_left_invariant(where, discrete)
 
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
@@ -172,6 +185,11 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
 
+    @property
+    def argument(self) -> Chooser:
+        """The function."""
+        return self.function
+
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values_after(kick)
@@ -214,21 +232,7 @@ def principal_point(discrete: Discretization, frame: Frame, canonical: Float[np.
 def displacement_at(discrete: Discretization, frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
     """Return the displacement over a point, in the user's frame."""
     system = discrete.system
-    return system.frame @ frame.increment(x) @ system.group.inverse(system.frame) + system.group.identity
-
-
-def _check_left_invariant(where: str, discrete: Discretization, branch: BranchRule) -> None:
-    if discrete.system.is_spatial:
-        changing = "a right-invariant constraint, whose equations change with the pose from step to step"
-        raise error(where, "be 'principal'", f"{shown(branch)} for {changing}", "Leave it out.")
-
-
-def _check_values_known(where: str, discrete: Discretization, branch: BranchRule) -> None:
-    _check_left_invariant(where, discrete, branch)
-    if not has_frame(discrete):
-        got = f"{shown(branch)} for {type(discrete.system).__name__}, of whose values not all are known"
-        remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
-        raise error(where, "be 'principal' or 'nearest'", got, remedy)
+    return system.from_canonical_frame(frame.increment(x)) + system.group.identity
 
 
 def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
@@ -271,8 +275,7 @@ def first_place(
         place = Place(point, canonical)
     else:
         W = demand if demand.ndim == 2 else _values.inverse_discrete_legendre(discrete, demand)
-        group, k = discrete.system.group, len(frame.stiffness)
-        x = frame.point(group.inverse(discrete.system.frame) @ W @ discrete.system.frame)
+        k, x = len(frame.stiffness), frame.point(discrete.system.to_canonical_frame(W))
         rows = frame.equations(np.zeros(discrete.system.rank)).residual(x)[0]
         place = Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
     rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
@@ -316,11 +319,11 @@ class RuleStepper(AbstractBodyStepper):
         """The name of the rule."""
         return self.rule.name
 
-    @functools.cached_property
-    def columns(self) -> dict[str, int]:  # type: ignore[override]
-        """The names and sizes of what a row holds."""
-        k = self.motion.system.rank
-        return {"reduced_momentum": k, "cayley": k, "canonical_pose": self.motion.system.group.pose_size}
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of canonical momenta, chart coordinates and pose entries."""
+        system = self.motion.system
+        return system.rank, system.rank, system.group.pose_size
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""

@@ -17,7 +17,7 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Bool, Float, Inexact
-from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import matrix_legendre
 from nonholo.discrete._variety import free_rows
 from nonholo.discrete.branching._equations import FAR, Equations, Frame, frame_of, has_frame
@@ -246,8 +246,10 @@ def _is_whole(generic: Section, points: Inexact[np.ndarray, "B m"]) -> bool:
 AnyFrame: TypeAlias = Frame | Sections
 
 
-def frame_for(where: str, discrete: Discretization) -> AnyFrame:
-    """Return the frame of a system whose branches are known, or refuse it."""
+def frame_for(owner: str, value: Any) -> AnyFrame:
+    """Return the frame of a discretization whose branches are known, or refuse it."""
+    where = f"{owner}(discrete=...)"
+    discrete = as_discretization(where, value)
     if has_frame(discrete):
         return frame_of(where, discrete)
     system, route = discrete.system, make_route(discrete, "matrix")
@@ -255,8 +257,8 @@ def frame_for(where: str, discrete: Discretization) -> AnyFrame:
         requirement = "have a mass tensor, a constraint fixed in the body, difference 'matrix' and constraint 'skew'"
         got = f"{type(system).__name__}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         raise error(where, requirement, got, _REMEDY)
-    if system.group.size > _ROWS or system.rank > _RANK:
-        requirement = f"have matrices of at most {_ROWS} rows and a constraint of rank at most {_RANK}"
+    if system.group.size > _ROWS or not 1 <= system.rank <= _RANK:
+        requirement = f"have matrices of at most {_ROWS} rows and a constraint of rank 1 to {_RANK}"
         raise error(where, requirement, f"{system.group.size} rows and rank {system.rank}", _REMEDY)
     return _sections(discrete)
 

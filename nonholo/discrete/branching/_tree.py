@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, error, natural
+from nonholo.base.checks import error, natural
 from nonholo.base.types import Array, Bool, Int
-from nonholo.discrete._discretization import Discretization, as_discretization
+from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._sections import AnyFrame, frame_for
-from nonholo.discrete.branching._values import point_over, roots_over
+from nonholo.discrete.branching._values import checked_point, roots_over
 
 _MOST = 10_000  # nodes of a tree
 _ROUNDING = 1e-12  # relative imaginary part that counts as zero
@@ -75,12 +75,9 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
         >>> tree.counts
         array([ 1,  3,  9, 27])
     """
-    where = "branch_tree(discrete=...)"
-    frame = frame_for(where, as_discretization(where, discrete))
+    frame = frame_for("branch_tree", discrete)
     group = discrete.system.group
-    where = "branch_tree(displacement=...)"
-    W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
-    point_over(where, discrete, frame, W)
+    W, _ = checked_point("branch_tree(displacement=...)", discrete, frame, displacement)
     generations = [np.array([W - group.identity], dtype=complex)]
     reality, parents = [np.array([True])], [np.array([-1])]
     first = 0

@@ -23,7 +23,6 @@ from nonholo.discrete.branching._equations import Equations, has_frame
 from nonholo.discrete.branching._forces import Node, node_of
 from nonholo.discrete.branching._roots import Root, place, roots_of
 from nonholo.discrete.branching._sections import AnyFrame, frame_for
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem, NormalForm
 
 
@@ -177,10 +176,8 @@ def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values of a step under forces over a restricted momentum in the user's frame."""
     canonical = node.free.system.to_canonical(r)
     roots = _roots_of(node.free, node.frame, node.equations(canonical))
-    values = branches_of(node.free, node.frame, canonical, roots)
-    code, increment = node.principal(canonical)
-    principal = _index_of(node.free, node.frame, code, increment, roots.increments, values.is_real)
-    return dataclasses.replace(values, region=np.full(len(values), ""), principal=principal)
+    values = branches_of(node.free, node.frame, canonical, roots, node.principal(canonical))
+    return dataclasses.replace(values, region=np.full(len(values), ""))
 
 
 class Roots(NamedTuple):
@@ -198,15 +195,14 @@ def roots_over(discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.
 
 def _roots_of(discrete: Discretization, frame: AnyFrame, equations: Equations) -> Roots:
     system, zeros = discrete.system, roots_of(equations)
-    back = system.group.inverse(system.frame)
-    increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in zeros]
+    increments = [system.from_canonical_frame(frame.increment(root.point.astype(complex))) for root in zeros]
     return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
 
 
 def branches_of(
-    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots
+    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots, principal: Any = None
 ) -> Branches:
-    """Return what is known of the displacements over a canonical restricted momentum."""
+    """Return what is known of the displacements over a canonical momentum; the principal one may be known."""
     system = cast(AbstractLLSystem, discrete.system)
     equations, zeros, X = roots
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
@@ -219,7 +215,7 @@ def branches_of(
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, frame, *principal_increment(discrete, canonical), X, is_real),
+        principal=_index_of(discrete, frame, *(principal or principal_increment(discrete, canonical)), X, is_real),
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
@@ -233,16 +229,19 @@ def momentum_sizes(
     return np.linalg.norm(momentum / sizes, axis=-1)
 
 
-def point_over(where: str, discrete: Discretization, frame: AnyFrame, W: np.ndarray) -> Float[np.ndarray, "m"]:
-    """Return the point over a real displacement, refused with its distance from the variety."""
+def checked_point(
+    where: str, discrete: Discretization, frame: AnyFrame, displacement: Any
+) -> tuple[Float[np.ndarray, "N N"], Float[np.ndarray, "m"]]:
+    """Return a real displacement and the point over it, refused with its distance from the variety."""
     system = discrete.system
-    canonical = system.group.inverse(system.frame) @ W @ system.frame
+    W = array(where, displacement, system.group.identity.shape, f"Pass an element of {system.group} as a matrix.")
+    canonical = system.to_canonical_frame(W)
     x = frame.point(canonical)
     distance = float(np.linalg.norm((frame.increment(x) + np.eye(len(W)) - canonical) * frame.stretch))
     if not distance <= _ON_VARIETY * np.linalg.norm(canonical * frame.stretch):
         remedy = "Build it as `group.exp(x)` with x admissible."
         raise error(where, "lie on the displacement variety", f"a matrix at distance {distance:.3g}", remedy)
-    return x
+    return W, x
 
 
 def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:
@@ -261,7 +260,7 @@ def _index_of(
     if code != 0 or not len(is_real):  # all values are too far away
         return None
     system = discrete.system
-    principal = system.frame @ increment @ system.group.inverse(system.frame)
+    principal = system.from_canonical_frame(increment)
     away = np.linalg.norm((X - principal) * frame.stretch, axis=(1, 2))
     distances = np.where(is_real, away, np.inf)
     best = int(np.argmin(distances))
@@ -275,7 +274,7 @@ def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Flo
     if isinstance(balls, str):
         return dataclasses.replace(values_over(discrete, frame, r), uncertified=balls)
     system, facts = discrete.system, zip(balls.multiplicity, balls.is_real, strict=True)
-    matrices = system.group.inverse(system.frame) @ (balls.increment + system.group.identity) @ system.frame
+    matrices = system.to_canonical_frame(balls.increment + system.group.identity)
     points = [frame.point(W.real if real else W) for W, real in zip(matrices, balls.is_real, strict=True)]
     zeros = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
@@ -364,7 +363,7 @@ def displacements_over(
     where = "displacements_over"
     if (node := _node(where, discrete, certify, configuration, step)) is not None:
         return values_at(node, _restricted(f"{where}(restricted_momentum=...)", node.free, restricted_momentum))
-    frame = _frame_for(where, discrete)
+    frame = frame_for(where, discrete)
     flags(where, certify=certify)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
     return certified_over(where, discrete, frame, r) if certify else values_over(discrete, frame, r)
@@ -408,20 +407,21 @@ def branches(
         True
     """
     node = _node("branches", discrete, certify, configuration, step)
-    frame = _frame_for("branches", discrete) if node is None else node.frame
+    frame = frame_for("branches", discrete) if node is None else node.frame
     flags("branches", certify=certify)
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
         raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
-    group, where = discrete.system.group, "branches(displacement=...)"
+    where = "branches(momentum=...)"
     if displacement is not None:
-        X = array(where, displacement, group.identity.shape, f"Pass an element of {group}.") - group.identity
-        point_over(where, discrete if node is None else node.free, frame, X + group.identity)
-    elif node is not None:
-        where = "branches(momentum=...)"
-        X = _increment(where, discrete, values_at(node, _restricted(where, discrete, momentum)))
+        free = discrete if node is None else node.free
+        W, _ = checked_point("branches(displacement=...)", free, frame, displacement)
+        X = W - discrete.system.group.identity
+    elif node is None and shape_of(momentum) != (discrete.system.rank,):
+        X = _inverse(where, discrete, frame, momentum)
     else:
-        X = _before("branches(momentum=...)", discrete, frame, momentum)
+        r = _restricted(where, discrete, momentum)
+        X = _increment(where, discrete, values_over(discrete, frame, r) if node is None else values_at(node, r))
     if node is not None:
         return values_at(*node.following(X))
     r = discrete.system.restrict(legendre(discrete, X, "right"))
@@ -449,7 +449,7 @@ def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[
         True
     """
     where = "inverse_discrete_legendre"
-    frame = _frame_for(where, discrete)
+    frame = frame_for(where, discrete)
     return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
 
 
@@ -475,10 +475,8 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
         (1.0, 0.0)
     """
     where = "fold_distance(displacement=...)"
-    frame = _frame_for("fold_distance", discrete)
-    group: AbstractMatrixGroup = discrete.system.group
-    W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
-    x = point_over(where, discrete, frame, W)
+    frame = frame_for("fold_distance", discrete)
+    _, x = checked_point(where, discrete, frame, displacement)
     return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
@@ -493,20 +491,9 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
     return node_of(owner, discrete, configuration, number)
 
 
-def _frame_for(owner: str, discrete: Discretization) -> AnyFrame:
-    return frame_for(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
-
-
 def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
     k = len(discrete.system.constraint_subspace)
     return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
-
-
-def _before(where: str, discrete: Discretization, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
-    """Return the displacement minus the identity that a full or restricted momentum belongs to."""
-    if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
-        return _inverse(where, discrete, frame, momentum)
-    return _increment(where, discrete, values_over(discrete, frame, _restricted(where, discrete, momentum)))
 
 
 def _increment(where: str, discrete: Discretization, values: Branches) -> Float[np.ndarray, "N N"]:

@@ -65,7 +65,8 @@ def _problem(B: list, c: list, r: list, half: fmpq = _ZERO, lever: Lever | None 
 
 
 def _stiffness(form: NormalForm) -> list[list[fmpq]]:
-    rows, along = np.asarray(form.across).tolist(), _exact(form.along)
+    across = np.diag(form.across) if form.is_diagonal else np.asarray(form.across)
+    rows, along = across.tolist(), _exact(form.along)
     return [[_exact(x) + (along if i == j else _ZERO) for j, x in enumerate(row)] for i, row in enumerate(rows)]
 
 

@@ -143,8 +143,7 @@ def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...],
     """Return the half impulses at saved nodes."""
     impulse, balance = forces
     if balance is not None:
-        first = discrete.part(weights(discrete.order)[0])
-        return jax.vmap(functools.partial(half_impulse, first, balance))(states[1], states[2], rows)
+        return jax.vmap(functools.partial(half_impulse, discrete.first_part, balance))(states[1], states[2], rows)
     return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
 
@@ -193,7 +192,7 @@ def _closed_step(
     discrete: Scheme, scalar: ScalarStep, g: Array, impulse: _Impulse | None
 ) -> tuple[_Step, Array, Callable[[_Node], Any]]:
     """Return the step of a kernel, the matrix of its momenta, and what its nodes are in the user's frame."""
-    (body, C, rows), system = _step.closed_step_of(discrete, scalar), discrete.system
+    body, system, C = scalar.body, discrete.system, jnp.asarray(scalar.momentum_map(discrete.system))
     group, frame, inverse = system.group, jnp.asarray(system.form_frame), jnp.linalg.inv(C)
 
     def pose(q: Array) -> Array:
@@ -211,7 +210,7 @@ def _closed_step(
 
     def at(node: _Node) -> tuple[Array, ...]:
         place = pose(node.g)
-        return jnp.linalg.solve(C, node.m), node.y if rows is None else node.y @ rows, place, place
+        return jnp.linalg.solve(C, node.m), scalar.canonical_chart(node.y), place, place
 
     return step, C, at
 
@@ -332,9 +331,7 @@ def _decode(
 
     A full momentum of the start must be that of the first node. The forces are half impulses and potential energies.
     """
-    system, first = discrete.system, discrete
-    if discrete.order > 2:
-        first = discrete.part(float(weights(discrete.order)[0]))
+    system, first = discrete.system, discrete.first_part
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial

@@ -50,8 +50,7 @@ def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, A
 
 def displacement_of(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
     """Return the element of the variety, in the user's frame, with canonical chart coordinates y."""
-    frame = discrete.system.frame
-    return jnp.asarray(frame) @ discrete.variety.displaced(y) @ jnp.asarray(discrete.system.group.inverse(frame))
+    return discrete.system.from_canonical_frame(discrete.variety.displaced(y))
 
 
 def momentum_of(discrete: Scheme, y: Array, g: Array, side: str) -> Array:
@@ -60,7 +59,7 @@ def momentum_of(discrete: Scheme, y: Array, g: Array, side: str) -> Array:
     X = discrete.variety.increment(y)
     if system.is_spatial:
         return legendre(discrete, group.inverse(g) @ X @ g, side)
-    return legendre(discrete, jnp.asarray(system.frame) @ X @ jnp.asarray(group.inverse(system.frame)), side)
+    return legendre(discrete, system.from_canonical_frame(X), side)
 
 
 def restricted(discrete: Scheme, momentum: Array, g: Array) -> Array:
@@ -156,16 +155,6 @@ def momenta_by_derivative(
 ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
 
 
-def closed_step_of(discrete: Scheme, step: ScalarStep) -> tuple[kernels.Body, Float[Array, "2 2"], Any]:
-    """Return a closed form between momenta and charts of the canonical frame and those of the kernel.
-
-    It is the body of the kernel, C with m = C r, for r along the rows of the constraint subspace, and R with
-    y_canonical = y R; None where these are the same.
-    """
-    C = jnp.asarray(discrete.system.frame_map)
-    return step.body, step.scale * (C if step.rows is None else step.rows @ C), step.rows
-
-
 def traceable(number: Array) -> Array:
     """Return a number as a scalar array: JAX would compile the step again for each value of a Python float."""
     return np.float64(number) if isinstance(number, float) else number
@@ -184,6 +173,5 @@ def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k
     """Return canonical chart coordinates of the principal displacement with momenta r along d, and the outcome."""
     if scalar is None:
         return principal_displacement(discrete, r, g)
-    body, C, rows = closed_step_of(discrete, scalar)
-    y, code = kernel_root(body, C @ r)
-    return y if rows is None else y @ rows, code
+    y, code = kernel_root(scalar.body, jnp.asarray(scalar.momentum_map(discrete.system)) @ r)
+    return scalar.canonical_chart(y), code

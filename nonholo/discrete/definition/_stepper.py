@@ -1,7 +1,6 @@
 """Steps by the definition, in JAX: to the principal value or the nearest one, of compositions, and parts of steps."""
 
 import dataclasses
-import functools
 from typing import Any
 
 import equinox
@@ -9,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
@@ -60,11 +60,11 @@ class DefinitionStepper(AbstractBodyStepper):
     with_poses: bool
     branch: str = "principal"
 
-    @functools.cached_property
-    def columns(self) -> dict[str, int]:  # type: ignore[override]
-        """The names and sizes of what a row holds."""
-        system, charts = self.motion.system, len(self.motion.variety.chart)
-        return {"reduced_momentum": system.rank, "cayley": charts, "canonical_pose": system.group.size**2}
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of momenta, chart coordinates and matrix entries."""
+        system = self.motion.system
+        return system.rank, len(self.motion.variety.chart), system.group.size**2
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Solve for the principal displacement, or take the one that is demanded of a run to the nearest value."""
@@ -76,7 +76,7 @@ class DefinitionStepper(AbstractBodyStepper):
             return np.concatenate((r, y, g.ravel(), *self._normal(ahead))), Outcome(int(code))
         y, number = np.zeros(len(self.motion.variety.chart)), -1
         if self.branch == "nearest" and first.demand is not None and first.demand.ndim == 2:
-            y, number = self.motion.variety.coordinates(group.inverse(frame) @ first.demand @ frame), 0
+            y, number = _coordinates(self.motion, system.to_canonical_frame(first.demand)), 0
         _, code, r, y, g = self._take(number, 0, r, y, g)
         return np.concatenate((r, y, g.ravel())), Outcome(int(code))
 
@@ -132,6 +132,15 @@ class DefinitionStepper(AbstractBodyStepper):
         group = self.motion.system.group
         g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1])))
         return ahead[0], g.ravel()
+
+
+def _coordinates(discrete: Scheme, W: np.ndarray) -> np.ndarray:
+    """Return the chart coordinates of a displacement, refused where there are none."""
+    try:
+        return discrete.variety.coordinates(W)
+    except np.linalg.LinAlgError:
+        got, remedy = "a half-turn, which has no Cayley coordinates", "Start from another displacement or a velocity."
+        raise error("simulate(displacement=...)", "turn by less than a half", got, remedy) from None
 
 
 @equinox.filter_jit

@@ -14,7 +14,7 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses, write_first
 from nonholo.systems import System
 
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -42,6 +42,16 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         return None
 
     in_threads = False
+
+    @property
+    @abc.abstractmethod
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of momenta, chart coordinates and pose entries that a row holds."""
+
+    @functools.cached_property
+    def columns(self) -> dict[str, int]:  # type: ignore[override]
+        """The names and sizes of what a row holds."""
+        return dict(zip(("reduced_momentum", "cayley", "canonical_pose"), self.sizes, strict=True))
 
     def decode(self, momenta: np.ndarray, charts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return momenta and charts as canonical ones, which they are by default."""
@@ -87,12 +97,11 @@ class CompiledStepper(AbstractBodyStepper):
     route: Any
     with_poses: bool
 
-    @functools.cached_property
-    def columns(self) -> dict[str, int]:  # type: ignore[override]
-        """The names and sizes of what a row holds."""
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of momenta and chart coordinates of the kernel, and of pose entries, which may be none."""
         momenta, charts, pose = self.route.sizes
-        pose = pose if self.with_poses or self.route.needs_pose else 0
-        return {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose}
+        return momenta, charts, pose if self.with_poses or self.route.needs_pose else 0
 
     @property
     def in_threads(self) -> bool:  # type: ignore[override]
@@ -115,10 +124,8 @@ class CompiledStepper(AbstractBodyStepper):
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps with the state of the kernel."""
-        width, begin = self.width, 0
-        for column in rows:
-            column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
-        good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
+        write_first(state, rows)
+        good, code = self.route.advance(state[self.width :], steps, every, tuple([column[1:] for column in rows]))
         keep_row(state, rows, good // every)
         return good, code
 

@@ -213,17 +213,15 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
 def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
-    S, exact = np.asarray(forced.constraint_subspace), exact_terms(forced)
+    exact = exact_terms(forced)
     has = forced.function is not None or bool(exact), forced.own_potential is not None
-    momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
-    velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
     force, potential = functions_of(forced, exact, faults)
     return kernels.Drive(
         kick=kick,
         planar=(2 if forced.group == SE(2) else 3) if free.is_scalar else 0,
         turn=plain(kernel_frame(free, forced)),
-        velocity=plain(velocity),
+        velocity=plain(velocities_of(free, forced)),
         along=plain(along.T),
         moves=plain(moves),
         weights=plain(weights),
@@ -302,7 +300,7 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
         arms = sum_products(along, levers)
-    rows = sum_products(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
+    rows = sum_products(forced.all_rows.T, along)
     return kernels.Kick(*map(plain, (keep, weight, arms, rows))), along
 
 
@@ -323,6 +321,12 @@ def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray,
     keep, push, _ = forced.propagator(S.T, half)
     remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
     return remainder, S.T @ push.T @ to_kernel
+
+
+def velocities_of(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "dim k"]:
+    """Return the matrix from the kernel's momenta to body velocities."""
+    S, momenta = np.asarray(forced.constraint_subspace), forced.from_canonical(free.decode(np.eye(forced.rank)))
+    return S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
 
 
 def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:
@@ -420,28 +424,25 @@ def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
     if forced.friction is not None:
         stiff = kernels.quadratic(free.body)[0] / kernels.inertia(free.body)[0]
         friction = half * stiff * (rows @ forced.friction.matrix @ rows.T)
-    table = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table))))
-    return kernels.Pull(*map(plain, (weight, arms, friction, half * free.scale * sum_products(table.T, rows.T))))
+    table = half * free.scale * sum_products(forced.all_rows.T, rows.T)
+    return kernels.Pull(*map(plain, (weight, arms, friction, table)))
 
 
 def balance(free: AbstractCompiledRoute, forced: Forced, order: int, faults: dict[str, str]) -> kernels.Balanced:
     """Return half the impulses at displacements in the units and axes of a kernel."""
     group, S, half = forced.group, np.asarray(forced.constraint_subspace), float(free.time_step) / 2
     to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
-    momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
-    velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
-    along, variety = half * to_kernel.T @ S, variety_of(forced.system, "skew")
-    frame, charts = forced.frame, free.from_kernel(np.eye(free.sizes[1]))
+    velocity = velocities_of(free, forced)
+    along, chart = half * to_kernel.T @ S, variety_of(forced.system, "skew").chart
     exact = [each for each in forced.terms if hasattr(each, "matrix_for")]
     springs = [each.numbers_for(group) for each in forced.terms if hasattr(each, "numbers_for")]
     linear = sum((each.matrix_for(group) for each in exact), np.zeros((group.size,) * 2 if exact else (0, 0)))
     C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
-    rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
     moves, parts = forced.differences
     force, potential = functions_of(forced, [], faults)
     numbers = kernels.Impulses(
         turn=plain(kernel_frame(free, forced)),
-        directions=plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),
+        directions=plain(forced.from_canonical_frame(group.hat(free.from_kernel(np.eye(free.sizes[1])) @ chart))),
         velocity=plain(velocity),
         along=plain(along),
         levers=plain(np.einsum("kd,dab->kab", along, group.basis)),
@@ -449,7 +450,7 @@ def balance(free: AbstractCompiledRoute, forced: Forced, order: int, faults: dic
         linear=plain(linear),
         springs=plain(np.reshape(springs, (len(springs), 2 + 2 * group.size))),
         friction=plain(C),
-        rows=plain(rows),
+        rows=plain(forced.all_rows @ along.T),
         moves=plain(moves),
         weights=plain(parts),
         time_step=float(free.time_step),

@@ -78,6 +78,14 @@ class ScalarStep(NamedTuple):
     scale: Array
     rows: Float[np.ndarray, "2 2"] | None
 
+    def momentum_map(self, system: System) -> Float[Array, "2 2"]:
+        """Return C with m = C r for momenta along the rows of the constraint subspace."""
+        return self.scale * (system.frame_map if self.rows is None else self.rows @ system.frame_map)
+
+    def canonical_chart(self, chart: Float[Array, "2"]) -> Float[Array, "2"]:
+        """Return canonical chart coordinates from those of the kernel."""
+        return chart if self.rows is None else chart @ self.rows
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ScalarRoute(AbstractCompiledRoute):

@@ -92,7 +92,7 @@ class SlipRoute(AbstractForcedRoute):
 
     @functools.cached_property
     def variety(self) -> Variety:
-        """The route of steps that slide."""
+        """The variety of steps that slide."""
         return variety_of(self.body, "skew")
 
     @functools.cached_property
@@ -260,12 +260,11 @@ class SlipStepper(AbstractBodyStepper):
     route: SlipRoute
     with_poses: bool
 
-    @functools.cached_property
-    def columns(self) -> dict[str, int]:  # type: ignore[override]
-        """The names and sizes of what a row holds."""
-        size = self.route.body.group.pose_size
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of canonical momenta, chart coordinates and pose entries."""
         momenta, charts, _ = self.route.free.sizes
-        return {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": size}
+        return momenta, charts, self.route.body.group.pose_size
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
@@ -301,7 +300,7 @@ class SlipStepper(AbstractBodyStepper):
         h = float(self.motion.time_step)
         beginning = route.begin(r.copy(), pose.copy(), number * h, int(number))
         if beginning.code != 0:
-            return tuple(np.empty((0, size)) for size in self.columns.values()), beginning.code
+            return tuple(np.empty((0, size)) for size in self.sizes), beginning.code
         row = self._row(r, pose, beginning)
         self._keep(state, beginning, int(number))
         return tuple(column[None] for column in row), 0
@@ -342,10 +341,10 @@ class SlipStepper(AbstractBodyStepper):
             r[:], pose[:] = beginning.after
 
     def _own(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        k, _, size = self.columns.values()
+        k, _, size = self.sizes
         begin = self.width
         return state[begin : begin + k], state[begin + k :][:size], state[begin + k + size :][:2]
 
     def _kernel(self, state: State) -> np.ndarray:
-        k, _, size = self.columns.values()
+        k, _, size = self.sizes
         return state[self.width + k + size + 2 :]

@@ -20,7 +20,7 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert.functions._slips import AbstractYieldingSystem
 from nonholo.lagrange_dalembert.functions._tables import ROWS, ForceTable
 from nonholo.lagrange_dalembert.functions._traced import Bound, Resistance, checked_value, takes_time, with_parameters
-from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of, with_later_parts
+from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of, with_later_force
 
 
 class Parameters(Mapping[str, Any]):
@@ -144,7 +144,7 @@ class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
         """Return the force with another one, which may take parameters or do without; beside one a table alone."""
         if self.parameters and "function" in (parts := parts_of(force)):
             force = force_of(parts | {"function": with_parameters(parts["function"], 3)})
-        return force_of(with_later_parts(self, force))
+        return with_later_force(self, force)
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:

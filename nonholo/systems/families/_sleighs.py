@@ -10,7 +10,7 @@ from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
-from nonholo.systems._mass import WideInertia, arrow_numbers, arrowhead, refuse_negative
+from nonholo.systems._mass import WideInertia, arrow_numbers, arrowhead, refuse_negative, with_mass
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import sleigh_rows
 
@@ -100,8 +100,25 @@ class ChaplyginSleigh(AbstractLLSystem):
         return NormalForm(inertia, 0.0, none, self.mass, self.a, none, frame_map=np.diag([-1.0, 1.0]))
 
 
+class AbstractSleighN(AbstractLLSystem):
+    """A sleigh on SE(n), which slides along body axis 1."""
+
+    center_of_mass: Array
+    has_blade: ClassVar[bool] = True
+
+    @system_memo
+    def group(self) -> AbstractMatrixGroup:
+        """The group of rigid motions SE(n)."""
+        return SE(self.center_of_mass.shape[-1])
+
+    @system_memo
+    def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
+        r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
+        return sleigh_rows(self.group)
+
+
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class MultidimensionalSleigh(AbstractLLSystem):
+class MultidimensionalSleigh(AbstractSleighN):
     r"""A sleigh on SE(n), n >= 3: its reference point moves along body axis 1, it turns in planes that contain it.
 
     $$ \mathfrak{d} = \{(w, v) : w = \textstyle\sum_{j\ge2} w_j\, e_1\wedge e_j,\ v = v_1 e_1\}, \qquad
@@ -135,7 +152,6 @@ class MultidimensionalSleigh(AbstractLLSystem):
     center_of_mass: Array
     mass_tensor: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "mass_tensor")
-    has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh"
@@ -178,17 +194,10 @@ class MultidimensionalSleigh(AbstractLLSystem):
         return f"MultidimensionalSleigh({head},\n  mass tensor about the center of mass = {tensor})"
 
     @system_memo
-    def group(self) -> AbstractMatrixGroup:
-        """The group of rigid motions SE(n)."""
-        return SE(self.center_of_mass.shape[-1])
-
-    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor about the reference point in homogeneous coordinates."""
         xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
-        a = xp.asarray(self.center_of_mass)
-        lever = xp.concatenate([a, xp.ones_like(a[:1])])
-        return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
+        return with_mass(xp.asarray(self.mass_tensor), self.mass, xp.asarray(self.center_of_mass))
 
     @system_memo
     def inertia_along(self) -> Float[Array, "n n"]:
@@ -196,14 +205,8 @@ class MultidimensionalSleigh(AbstractLLSystem):
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
         xp = (m * a @ J).__array_namespace__()
         J, a = xp.asarray(J), xp.asarray(a)
-        lever = xp.concatenate([a[1:], xp.ones_like(a[:1])])
         turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
-        return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
-
-    @system_memo
-    def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
-        r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
-        return sleigh_rows(self.group)
+        return with_mass(turning, m, a[1:])
 
     @system_memo
     def normal_form(self) -> NormalForm:
@@ -212,7 +215,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class ArrowheadSleigh(AbstractLLSystem):
+class ArrowheadSleigh(AbstractSleighN):
     r"""The sleigh on SE(n) with $J_C = \mathrm{diag}(d_1, \dots, d_n)$ plus c in the first row and column.
 
     `MultidimensionalSleigh.arrowhead` makes it; `dense` gives the same sleigh as a `MultidimensionalSleigh`.
@@ -237,7 +240,6 @@ class ArrowheadSleigh(AbstractLLSystem):
     diagonal: Array
     coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
-    has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh.arrowhead"
@@ -258,11 +260,6 @@ class ArrowheadSleigh(AbstractLLSystem):
         return MultidimensionalSleigh(self.mass, self.center_of_mass, J)
 
     @system_memo
-    def group(self) -> AbstractMatrixGroup:
-        """The group of rigid motions SE(n)."""
-        return SE(len(self.diagonal))
-
-    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "N N"]:
         """The mass tensor about the reference point as a matrix."""
         return self.dense.homogeneous_mass_tensor
@@ -272,11 +269,6 @@ class ArrowheadSleigh(AbstractLLSystem):
         r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
         a = self.center_of_mass
         return WideInertia(self.diagonal[1:] + self.diagonal[0] + self.mass * a[0] ** 2, self.mass, a[1:])
-
-    @system_memo
-    def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
-        r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
-        return sleigh_rows(self.group)
 
     @system_memo
     def normal_form(self) -> NormalForm:

@@ -11,7 +11,7 @@ from nonholo.systems.forces._friction import (
     refuse_table,
     slips_of,
     terms_of,
-    with_later_parts,
+    with_later_force,
     without_slips,
 )
 from nonholo.systems.forces._potentials import Gravity, Linear, Spring

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, assign, choice, error, function, refuse_given, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, function, instance, refuse_given, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -128,25 +128,23 @@ class Forced(AbstractSystem):
         return system.forced(potential, force)
 
     def __post_init__(self) -> None:
-        inside: Any = self.system
-        if not isinstance(inside, AbstractSystem):
-            remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
-            raise error("Forced(system=...)", "be a system on a group", shown(inside), remedy)
-        if isinstance(inside, Forced):
-            refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
-            force = _friction.force_of(_friction.with_later_parts(inside, self.force))
-            scheme = self.scheme or inside.scheme
-            assign(self, system=inside.system, potential=inside.potential, force=force, scheme=scheme)
-            inside = self.system
+        remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
+        system = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
+        self._hold(*system.add_forces(self.potential, self.force, self.scheme))
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
             if callable(each):
                 function("Forced(potential=...)", each, "configuration")
             else:
-                each.check(inside.group)
+                each.check(self.system.group)
         assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
         assign(self, force=_friction.force_of(self._checked_parts()))
+
+    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
+        """Return the fields of the system with a table that comes later; other forces are refused."""
+        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
+        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
@@ -303,7 +301,8 @@ class Forced(AbstractSystem):
         g = self._at(configuration)
         if not self.terms:
             return np.zeros((*g.shape[:-2], self.group.dim))
-        covectors = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
+        group = self.group
+        covectors = (_each(self._slope, g, group.dim) if callable(x) else x.covector(group, g) for x in self.terms)
         return functools.reduce(operator.add, covectors)
 
     def mean_force(self, g: Poses, W: Poses, h: Array, constant: Covectors, time: Any = None) -> Covectors:
@@ -330,8 +329,9 @@ class Forced(AbstractSystem):
             return f
         middle = g @ group.exp(group.log(W) / 2)
         if self.own_potential is not None:
-            f = f + self._mean_slope(g, W, X, _each(self._slope, middle))
-        return f + np.array([self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)])
+            f = f + self._mean_slope(g, W, X, _each(self._slope, middle, group.dim))
+        driving = [self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)]
+        return f + np.reshape(driving, f.shape)
 
     def _mean_slope(self, g: np.ndarray, W: np.ndarray, X: np.ndarray, pull: np.ndarray) -> np.ndarray:
         """Return -G of the function, from -dU in the middle."""
@@ -356,11 +356,17 @@ class Forced(AbstractSystem):
         where, remedy = "Forced(force=...)", "Return a body covector."
         return numbers_of(where, self.function, (self.group.dim,), remedy, float(time), configuration, body_velocity)
 
+    @property
+    def all_rows(self) -> Float[Array, "K dim"]:
+        """The rows of the table, and a last one of zeros."""
+        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
+        xp = table.__array_namespace__()
+        return xp.concatenate([table, xp.zeros((1, self.group.dim))])
+
     def rows(self, steps: np.ndarray) -> Float[Array, "K dim"]:
         """Return the rows of the table for numbers of steps from -1; zero before it, after its end, and without one."""
-        table = np.zeros((0, self.group.dim)) if self.table is None else self.table
-        after = table.__array_namespace__().zeros((1, self.group.dim))
-        return table.__array_namespace__().concatenate([table, after])[np.minimum(steps, len(table))]
+        rows = self.all_rows
+        return rows[np.minimum(steps, len(rows) - 1)]
 
     def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
@@ -460,10 +466,9 @@ def central_differences(dim: int) -> tuple[Float[np.ndarray, "dim orders 2 dim"]
     return np.stack([offsets, -offsets], axis=2), _DIFFERENCES
 
 
-def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
-    """Return the values of a function of one matrix at all of them."""
-    values = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
-    return values.reshape((*g.shape[:-2], *values.shape[1:]))
+def _each(function: Callable[[np.ndarray], Any], g: np.ndarray, *shape: int) -> np.ndarray:
+    """Return the values of a function of one matrix at all of them, or at none."""
+    return np.reshape([function(each) for each in g.reshape(-1, *g.shape[-2:])], (*g.shape[:-2], *shape))
 
 
 def midpoint_impulse(

@@ -182,6 +182,16 @@ class Widened(AbstractLLSystem):
     leaves: ClassVar[tuple[str, ...]] = ("system",)
     structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
 
+    def __post_init__(self) -> None:
+        """Refuse a slip without inertia, as that of a rod about itself."""
+        if is_traced(self.inertia_operator):
+            return
+        terms = np.abs(self.duals) @ np.abs(self.inertia_operator) @ np.abs(self.duals).T
+        units = np.sqrt(np.maximum(terms.diagonal(), np.finfo(np.float64).tiny))
+        if not np.abs(np.linalg.eigvalsh(self.slip_inertia / units / units[:, None])).min() > _ROUNDING:
+            got, remedy = f"inertia {self.slip_inertia.tolist()}", "Leave the slip out, or give the body this inertia."
+            raise error("Forced(force=Slip(...))", "have an inertia along the rows that yield", got, remedy)
+
     group = property(operator.attrgetter("system.group"))  # type: ignore[assignment]
     homogeneous_mass_tensor = property(operator.attrgetter("system.homogeneous_mass_tensor"))
     inertia_operator = property(operator.attrgetter("system.inertia_operator"))
@@ -275,14 +285,14 @@ def force_of(parts: dict[str, Any]) -> Any:
     return forces if len(forces) > 1 else forces[0] if forces else None
 
 
-def with_later_parts(system: Any, force: Any) -> dict[str, Any]:
-    """Return the parts of the force of a system and of one that comes later: beside others a table, which is added."""
+def with_later_force(system: Any, force: Any) -> Any:
+    """Return the force of a system with one that comes later: beside others a table, which is added."""
     own, parts = parts_of(system.force), parts_of(force)
     tables = [each["table"] for each in (own, parts) if "table" in each]
     if own and parts and (parts.keys() != {"table"} or np.shape(tables[0]) != np.shape(tables[-1])):
         remedy = "Pass all forces at once; a table alone may come later."
         raise error("Forced(system=...)", "have no force yet", shown(system), remedy)
-    return own | parts | ({"table": functools.reduce(operator.add, tables)} if tables else {})
+    return force_of(own | parts | ({"table": functools.reduce(operator.add, tables)} if tables else {}))
 
 
 def refuse_table(where: str, table: Any) -> None:
