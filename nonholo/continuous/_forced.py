@@ -362,6 +362,9 @@ def forced_field(forced: Forced) -> Field:
 
     def derivative(now: float, rows: np.ndarray) -> np.ndarray:
         if is_traced(rows):
+            if forced.needs_function:
+                demand, remedy = "be a NumPy array under forces by functions", "Call it outside jax.jit and jax.grad."
+                raise error("vector_field(...)(state=...)", demand, "a traced array", remedy)
             return rows.__array_namespace__().vectorize(lambda row: field(now, row), signature="(n)->(n)")(rows)
         return np.apply_along_axis(lambda row: field(now, row), -1, rows)
 
