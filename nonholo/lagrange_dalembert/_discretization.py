@@ -153,6 +153,10 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[orbits.GroupOrbit]):
     """
 
 
+MAPS: dict[str, Any] = {"CoordinateOrbit": CoordinateDiscretization, "GroupOrbit": GroupDiscretization}
+"""The discretized systems by the names of their orbits."""
+
+
 def checked_state(
     system: Any, configuration: Any, starts: dict[str, Any], time: float, owner: str = "flow", *, project: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
