@@ -1,4 +1,4 @@
-"""What bodies share: parts as they look from above, and formulas of their motions."""
+"""Parts of bodies as they look from above, and formulas of motions, which examples share."""
 
 from collections.abc import Callable
 from typing import Any
