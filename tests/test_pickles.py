@@ -97,12 +97,14 @@ def used() -> dict[str, Any]:
     top, sleigh = nh.SuslovTop(TENSOR), nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2)
     discrete, wide = nh.discretize(top, 0.5), nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 0.1)
     heavy = nh.Forced(top, nh.Gravity([0.0, 0.0, -1.0], point=[0.1, 0.2, 0.3]))
+    slipping = nh.Forced(sleigh, force=nh.Slip(sleigh.annihilator, 0.3))
     found = {
         "top": nh.simulate(discrete, restricted_velocity=(0.1, 0.2), steps=5),
         "sleigh": nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
         "SO(4)": nh.simulate(wide, restricted_velocity=(0.1, 0.2, 0.3), steps=5),
         "ensemble": nh.ensemble(discrete, restricted_velocity=[[0.1, 0.2], [0.2, 0.1]], steps=5),
         "flow": nh.flow(sleigh, restricted_velocity=(0.1, 0.2), times=(0.0, 1.0)),
+        "flow that slips": nh.flow(slipping, body_velocity=(0.1, 0.2, 0.3), times=(0.0, 1.0)),
         "forced": nh.simulate(nh.discretize(heavy, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
     }
     for orbit in found.values():

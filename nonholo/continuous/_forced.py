@@ -284,13 +284,18 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
     else:
         nodes, pieces, outcome = _steps(field, start, span, rtol, is_stiff=is_stiff)
 
-    def at(times: Float[np.ndarray, "K"]) -> States:
-        whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
-        return _states(forced, whole(times).T)
-
+    at = functools.partial(_states_at, forced, start, nodes, pieces)
     good_times = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
     why = " ".join(faults.values()) if outcome == Outcome.nonfinite else ""
     return Solved(at(good_times), outcome, at, lambda: np.array(nodes[:-1]), why)
+
+
+def _states_at(
+    forced: Forced, start: np.ndarray, nodes: list[float], pieces: list[Any], times: Float[np.ndarray, "K"]
+) -> States:
+    """Return states at times, of a motion without steps the first one."""
+    whole = scipy.integrate.OdeSolution(nodes, pieces)(times) if pieces else np.tile(start[:, None], len(times))
+    return _states(forced, whole.T)
 
 
 def _steps(
@@ -357,6 +362,9 @@ def forced_field(forced: Forced) -> Field:
 
     def derivative(now: float, rows: np.ndarray) -> np.ndarray:
         if is_traced(rows):
+            if forced.needs_function:
+                demand, remedy = "be a NumPy array under forces by functions", "Call it outside jax.jit and jax.grad."
+                raise error("vector_field(...)(state=...)", demand, "a traced array", remedy)
             return rows.__array_namespace__().vectorize(lambda row: field(now, row), signature="(n)->(n)")(rows)
         return np.apply_along_axis(lambda row: field(now, row), -1, rows)
 

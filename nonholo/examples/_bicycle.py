@@ -9,7 +9,8 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, energy_of, of_states, ready, system_in, wheel, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import energy_of, of_states, wheel
 from nonholo.groups import SO
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -95,7 +96,7 @@ def bicycle(
     rows = map(np.array, (rear_wheel, rear_frame, front_frame, front_wheel))
     system = with_numbers(_system, wheelbase, trail, tilt, *rows, gravity)
     height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
-    conserved = {"energy": energy_of(system.plain.lagrangian), "height of the front contact": height}
+    conserved = {"energy": energy_of(system), "height of the front contact": height}
     return Example("bicycle", system, q, start, conserved, time_step=0.02)
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, rate, ready, system_in, wheel, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import rate, speed_ahead, wheel
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import ChaplyginSleigh, Forced
 
@@ -83,8 +84,7 @@ def knife_edge_on_incline(
         return np.concatenate([q[:2] + antiderivative(phi) - antiderivative(q[2]), phi[..., None]], axis=-1)
 
     def drive(q: Array, v: Array) -> Array:
-        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
-        return along * v[..., 2] - G * np.sin(q[..., 2])
+        return speed_ahead(q, v) * v[..., 2] - G * np.sin(q[..., 2])
 
     conserved = {"phi'": rate(2), "u phi' - G sin phi": drive}
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])

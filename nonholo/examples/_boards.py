@@ -1,14 +1,15 @@
 """Vehicles that turns of joints drive along: roller racer, Twistcar, snakeboard, snake of three links."""
 
 import functools
-from typing import Any, cast
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, energy_of, pair, rate, ready, system_in, turn, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import energy_of, pair, rate, speed_ahead, turn
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
@@ -146,7 +147,7 @@ def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place:
     heading = -body[4] * turning / (body[3] + body[4])
     q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
     system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
-    conserved = {"energy": energy_of(cast(Any, system).plain.lagrangian)} if amplitude is None else {}
+    conserved = {"energy": energy_of(system)} if amplitude is None else {}
     return Example(name, system, q, v, conserved)
 
 
@@ -244,8 +245,7 @@ def snakeboard(
         return v[..., 2] + v[..., 3]
 
     def momentum(q: Array, v: Array) -> Array:
-        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
-        return along * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
+        return speed_ahead(q, v) * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "theta' + psi'": spin, "momentum along the constraint": momentum}
     return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, conserved)
@@ -335,7 +335,7 @@ def snake(
     u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
     system = with_numbers(_snake_system, half, mass, inertia)
-    return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system.plain.lagrangian)})
+    return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system)})
 
 
 @functools.cache

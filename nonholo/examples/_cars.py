@@ -8,8 +8,8 @@ import numpy as np
 
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, pair, rate, ready, scales, system_in, turn, wheel, with_numbers
-from nonholo.examples._rolling import chord
+from nonholo.examples._example import Example, Numbers, ready, scales, system_in, with_numbers
+from nonholo.examples._formulas import energy_of, on_circle, pair, rate, speed_ahead, turn, wheel
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 _CAR = ("mass", "inertia", "wheelbase", "wheel_radius", "wheel_inertia", "steering_inertia")
@@ -78,15 +78,11 @@ def kinematic_car(
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, u / R, turn])
 
     def momentum(q: Array, v: Array) -> Array:
-        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
-        return along * np.sqrt(m + Jw / R**2 + J / ell**2 * np.tan(q[..., 4]) ** 2)
-
-    def circle(time: Array) -> Array:
-        return q + np.array([*chord(q[2], u, omega, time), omega * time, u / R * time, 0 * time]).T
+        return speed_ahead(q, v) * np.sqrt(m + Jw / R**2 + J / ell**2 * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "momentum along the constraint": momentum}
     system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
-    return Example("kinematic_car", system, q, v, conserved, None if turn else circle)
+    return Example("kinematic_car", system, q, v, conserved, None if turn else on_circle(q, v, u))
 
 
 @functools.cache
@@ -188,8 +184,7 @@ def two_wheeled_robot(
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, (u + c * omega) / R, (u - c * omega) / R])
 
     def energy(q: Array, v: Array) -> Array:
-        along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
-        return (M * along**2 + K * v[..., 2] ** 2) / 2
+        return (M * speed_ahead(q, v) ** 2 + K * v[..., 2] ** 2) / 2
 
     def axle(q: Array, v: Array) -> Array:
         return q[..., 2] - R / (2 * c) * (q[..., 3] - q[..., 4])
@@ -294,7 +289,6 @@ def trailers(
     if not len(lengths := array(f"{where}(hitches=...)", hitches, (None,), "Pass one length for each trailer.")):
         raise error(f"{where}(hitches=...)", "have at least one length", "none", "Pass one for each trailer.")
     d = scales(f"{where}(hitches=...)", lengths)
-    m, J, trailer, moment = mass, inertia, trailer_mass, trailer_inertia
     remedy, n = "Pass the heading of the tractor, then those of the trailers.", len(d) + 1
     headings = array(f"{where}(angles=...)", np.zeros(n) if angles is None else angles, (n,), remedy)
     u, rates, along = speed, [turning], speed
@@ -304,14 +298,10 @@ def trailers(
     q = np.append(place, headings)
     v = np.array([u * np.cos(headings[0]), u * np.sin(headings[0]), *rates])
 
-    def energy(q: Array, v: Array) -> Array:
-        angles, ahead = q[..., 2:], v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
-        speeds = ahead[..., None] * np.cumprod(np.cos(angles[..., :-1] - angles[..., 1:]), axis=-1)
-        own = m * ahead**2 + trailer * (speeds**2).sum(axis=-1)
-        return (own + v[..., 2:] ** 2 @ np.array([J, *len(d) * (moment,)])) / 2
-
-    system = with_numbers(functools.partial(_trailer_system, n), np.array(d), m, J, trailer, moment)
-    return Example("trailers", system, q, v, {"theta'": rate(2), "energy": energy})
+    system = with_numbers(
+        functools.partial(_trailer_system, n), np.array(d), mass, inertia, trailer_mass, trailer_inertia
+    )
+    return Example("trailers", system, q, v, {"theta'": rate(2), "energy": energy_of(system)})
 
 
 @functools.cache

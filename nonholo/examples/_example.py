@@ -1,4 +1,4 @@
-"""The form of an example: a system, a start, and what is known; parts of bodies as they look from above."""
+"""The form of an example: a system, a start, and what is known."""
 
 import copy
 import dataclasses
@@ -9,37 +9,14 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, assign, number, scale
 from nonholo.base.memo import Keeper
-from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.simulation import flow, simulate
-
-Place = tuple[float, float]
-
-
-def wheel(place: Place, diameter: float, angle: Array | float = 0.0, width: float = 0.3) -> Float[np.ndarray, "4 2"]:
-    """Return a wheel at a place that rolls along a direction, its width in parts of its diameter."""
-    corners = diameter / 2 * np.array([[-1.0, -width], [1.0, -width], [1.0, width], [-1.0, width]])
-    return np.array(place) + corners @ turn(angle)
-
-
-def pair(place: Place, half: float, diameter: float, angle: Array | float = 0.0) -> list[Float[np.ndarray, "P 2"]]:
-    """Return an axle and its two wheels, turned together."""
-    ends = np.array(place) + np.array([[0.0, -half], [0.0, half]]) @ turn(angle)
-    return [ends, *(wheel(end, diameter, angle) for end in ends)]
-
-
-def turn(angle: Array | float) -> Float[np.ndarray, "2 2"]:
-    """Return the matrix that turns rows."""
-    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-
 
 _POSITIVE = "Pass a positive number."
 Numbers = Mapping[str, Any]
@@ -200,32 +177,6 @@ def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
     """Return a system that is made once, with these parameters in its order."""
     system = make()
     return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
-
-
-def rate(index: int) -> Callable[[Array, Array], Array]:
-    """Return the function (configuration, velocity) -> one component of the velocity."""
-    return lambda _q, v: v[..., index]
-
-
-def of_states(function: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
-    """Return a function of JAX of one configuration and velocity as one of many, in double precision."""
-    many = jax.jit(jnp.vectorize(function, signature="(n),(m)->()"))
-
-    def values(q: Array, v: Array) -> Array:
-        with double_precision():
-            return np.asarray(many(q, v))
-
-    return values
-
-
-def energy_of(lagrangian: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
-    r"""Return the energy $v\cdot\partial L/\partial v - L$ of many states."""
-
-    def energy(q: Array, v: Array) -> Array:
-        value, along = jax.jvp(lambda u: lagrangian(q, u), (v,), (v,))
-        return along - value
-
-    return of_states(energy)
 
 
 def scales(where: str, rows: Any) -> tuple[float, ...]:

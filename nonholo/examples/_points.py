@@ -7,7 +7,8 @@ import numpy as np
 
 from nonholo.base.checks import bounded_count
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, rate, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import energy_of, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
@@ -110,13 +111,8 @@ def chaotic_quartic_oscillator(*, pairs: int = 3, coupling: float = 1.0) -> Exam
     q = np.concatenate([[0.5], y, z])
     v = np.concatenate([[-y @ z_rates], np.zeros(n), z_rates])
 
-    def energy(q: Array, v: Array) -> Array:
-        y, z = q[..., 1 : n + 1], q[..., n + 1 :]
-        quartic = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
-        return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling * quartic) / 2
-
     system = with_numbers(functools.partial(_quartic, n), coupling)
-    return Example("chaotic_quartic_oscillator", system, q, v, {"energy": energy})
+    return Example("chaotic_quartic_oscillator", system, q, v, {"energy": energy_of(system)})
 
 
 @functools.cache
@@ -166,9 +162,6 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         xi = q[..., 2]
         return v[..., 2] ** 2 / 2 - np.cos(xi) + asymmetry / 2 * np.sin(2 * xi)
 
-    def energy(q: Array, v: Array) -> Array:
-        return pendulum(q, v) + np.sum(q[..., :2] ** 2 + v[..., :2] ** 2, axis=-1) / 2
-
     q, v = np.array([1.0, 0.3, 0.0]), np.array([0.0, 0.7, turning])
     facts = (
         "Energy and the energy of the pendulum are conserved.",
@@ -177,7 +170,8 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
     system = with_numbers(functools.partial(_gearbox, asymmetry == 0), asymmetry)
-    return Example("non_reversible", system, q, v, {"energy": energy, "energy of the pendulum": pendulum}, facts=facts)
+    conserved = {"energy": energy_of(system), "energy of the pendulum": pendulum}
+    return Example("non_reversible", system, q, v, conserved, facts=facts)
 
 
 @functools.cache

@@ -8,7 +8,8 @@ import numpy as np
 
 from nonholo.base.checks import error, number
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, energy_of, rate, ready, system_in, wheel, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import energy_of, on_circle, rate, wheel
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 
@@ -152,7 +153,7 @@ def ball_in_bowl(
         return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
 
     system = with_numbers(_bowl_system, m, r, J, rho, g)
-    conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.plain.lagrangian)}
+    conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system)}
     return Example("ball_in_bowl", system, q, np.append(velocity, spin * n - rho / r * np.cross(n, dn)), conserved)
 
 
@@ -321,21 +322,9 @@ def rolling_disk(
         True
     """
     q, R, (roll, turn) = np.asarray(configuration), radius, rates
-
-    def exact(time: Array) -> Array:
-        t = np.asarray(time)
-        x, y = chord(q[3], R * roll, turn, t)
-        return np.stack([q[0] + x, q[1] + y, q[2] + roll * t, q[3] + turn * t], axis=-1)
-
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
     system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
-    return Example("rolling_disk", system, q, v, {"theta'": rate(2), "phi'": rate(3)}, exact)
-
-
-def chord(heading: float, speed: float, turning: float, time: Array) -> Array:
-    """Return the ways along the chord of an arc: its length is that of the arc times sinc, also without turning."""
-    half = turning * time / 2
-    return speed * time * np.sinc(half / np.pi) * np.array([np.cos(heading + half), np.sin(heading + half)])
+    return Example("rolling_disk", system, q, v, {"theta'": rate(2), "phi'": rate(3)}, on_circle(q, v, R * roll, 3))
 
 
 @functools.cache
@@ -424,13 +413,10 @@ def tilting_disk(
         rolling = (J * turn * sin - m * g * R * np.tan(q[3]) / turn) / (axle + m * R**2) - turn * sin
     roll = float(number(f"examples.{name}(rolling=...)", rolling))
 
-    def circle(time: Array) -> Array:
-        t = np.asarray(time)
-        return q + np.array([*chord(q[2], R * roll, turn, t), turn * t, 0.0 * turn * t, roll * t]).T
-
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
     system = with_numbers(_tilting_system, m, R, axle, J, g)
-    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, circle if steady else None)
+    circle = on_circle(q, v, R * roll) if steady else None
+    return Example(name, system, q, v, {"energy": energy_of(system)}, circle)
 
 
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")

@@ -8,7 +8,8 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, energy_of, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._formulas import energy_of
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import Forced, SuslovTop
 
@@ -74,7 +75,7 @@ def rattleback(
     system = with_numbers(_system, np.array(semi_axes), center, np.array(inertia), product, gravity)
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
-    conserved = {"energy": energy_of(system.plain.lagrangian)}
+    conserved = {"energy": energy_of(system)}
     return Example("rattleback", system, q, v, conserved, time_step=0.002, steps=5000)
 
 

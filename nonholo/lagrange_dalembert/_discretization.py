@@ -99,7 +99,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         none = np.empty((0, system.constraints))
         orbit = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
         step = states.step + fractions.astype(np.int64)
-        return dataclasses.replace(orbit, time=states.time + fractions * h, step=step)
+        return dataclasses.replace(orbit, time=states.time + fractions * h, step=step, events=states.events)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -151,6 +151,10 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[orbits.GroupOrbit]):
         >>> nh.discretize(free, 0.5).time_step
         0.5
     """
+
+
+MAPS: dict[str, Any] = {"CoordinateOrbit": CoordinateDiscretization, "GroupOrbit": GroupDiscretization}
+"""The discretized systems by the names of their orbits."""
 
 
 def checked_state(

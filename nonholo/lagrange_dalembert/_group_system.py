@@ -18,7 +18,7 @@ from nonholo.lagrange_dalembert._places import Poses
 from nonholo.systems import checked_group, group_mass_tensor, inertia_form, terms_of
 
 if TYPE_CHECKING:
-    from nonholo.lagrange_dalembert._discretization import GroupDiscretization
+    from nonholo.lagrange_dalembert._discretization import GroupDiscretization  # noqa: F401  (named by the base class)
     from nonholo.lagrange_dalembert._orbit import GroupOrbit  # noqa: F401  (named by the base class)
 
 
@@ -114,21 +114,9 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         self._check_force(repr(self.group), g, jax.ShapeDtypeStruct((n,), float))
         self._check_slips(self.discrete_constraints)
 
-    @property
-    def is_driven(self) -> bool:
-        """Whether a force acts."""
-        return self.holding.force is not None
-
     def _trace_at(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         arrays = f"shapes {[x.shape for x in arguments]}"
         self._trace(name, repr(self.group), arguments, tracing.checked_value, shape, arrays)
-
-    @property
-    def constraints(self) -> int:
-        """The number s of constraints."""
-        return tracing.count_of(self.constraint_forms)
-
-    velocity_constraints = constraints
 
     @property
     def dimension(self) -> int:
@@ -188,10 +176,6 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return self.group.identity.shape, (self.group.dim,)
-
-    def discrete_map(self, time_step: Any) -> "GroupDiscretization":
-        """Return the discretized system, see `nonholo.discretize`."""
-        return tracing.room("_discretization").GroupDiscretization(self, time_step)
 
 
 def _sum(first: Callable[..., Array], second: Callable[..., Array]) -> Callable[..., Array]:

@@ -433,5 +433,4 @@ class RecordedSystem(AbstractCoordinateSystem):
 
     def discrete_map(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
-        kind = "GroupDiscretization" if "group" in self.record else "CoordinateDiscretization"
-        return getattr(room("_discretization"), kind)(self, time_step)
+        return room("_discretization").MAPS[self.orbits](self, time_step)

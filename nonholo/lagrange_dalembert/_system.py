@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
@@ -15,7 +15,7 @@ from nonholo.lagrange_dalembert import functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
 
 if TYPE_CHECKING:
-    from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
+    from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization  # noqa: F401  (named by the base)
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit  # noqa: F401  (named by the base class)
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
@@ -166,16 +166,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
             where, demand = _argument("discrete_lagrangian"), "be left out where L or A has the time"
             raise error(where, demand, "discrete functions", remedy)
 
-    @functools.cached_property
-    def is_driven(self) -> bool:
-        """Whether a force acts, or anything depends on time or moves by itself."""
-        acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return acts or any(map(self.takes_time, self.of_time))
-
-    def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
-        motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
-        return super()._bound_fields(p, *rows) | {"prescribed": motions}
-
     @property
     def places(self) -> Coordinates:
         """Where it moves."""
@@ -185,20 +175,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         """Return the parts of the outline at a configuration, in body axes."""
         where, last = _argument("outline"), (self.parameters,) if self.parameters else ()
         return _as_parts(where, call(where, self.outline, q, *last) if callable(self.outline) else self.outline)
-
-    def takes_time(self, function: str) -> bool:
-        """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
-        return bool(self._time(function))
-
-    @functools.cached_property
-    def constraints(self) -> int:
-        """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
-        return self.velocity_constraints + tracing.count_of(self.holonomic) + len(self.prescribed)
-
-    @functools.cached_property
-    def velocity_constraints(self) -> int:
-        """The number of constraint forms."""
-        return tracing.count_of(self.constraint_forms)
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -245,10 +221,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
             1.0
         """
         return tracing.room("_start").regularity(self, q, q_next, time_step)
-
-    def discrete_map(self, time_step: Any) -> "CoordinateDiscretization":
-        """Return the discretized system, see `nonholo.discretize`."""
-        return tracing.room("_discretization").CoordinateDiscretization(self, time_step)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:

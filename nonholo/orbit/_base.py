@@ -241,6 +241,15 @@ class AbstractOrbit(Keeper, abc.ABC):
         at = selection(f"{type(self).__name__}.chosen(states=...)", states)
         return self.of_rows({name: rows[at] for name, rows in self.rows().items()})
 
+    def __getitem__(self: SelfT, states: slice) -> SelfT:
+        """Return the orbit at a forward slice of its states."""
+        if not isinstance(states, slice):
+            raise TypeError(f"`Orbit[...]` takes slices. Got {states!r}. Index an array instead: orbit.momentum[0].")
+        stride = states.indices(len(self))[2]
+        if stride < 1:
+            raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
+        return dataclasses.replace(cast(Any, self.chosen(states)), save_every=self.save_every * stride)
+
     def joined(self: SelfT, others: Sequence[SelfT]) -> SelfT:
         """Return the states with those of other parts of the same motion after them."""
         parts = [part.rows() for part in (self, *others)]

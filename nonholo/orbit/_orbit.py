@@ -210,15 +210,6 @@ class Orbit(AbstractOrbit):
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<Orbit of {type(self.system).__name__}: {len(self)} states{span}, {self.outcome}>"
 
-    def __getitem__(self, states: slice) -> "Orbit":
-        """Return the orbit at a forward slice of its states."""
-        if not isinstance(states, slice):
-            raise TypeError(f"`Orbit[...]` takes slices. Got {states!r}. Index an array instead: orbit.momentum[0].")
-        stride = states.indices(len(self))[2]
-        if stride < 1:
-            raise ValueError(f"`Orbit[...]` must be sliced forwards. Got stride {stride}. Reverse the arrays instead.")
-        return dataclasses.replace(self.chosen(states), save_every=self.save_every * stride)
-
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state."""
         return {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}

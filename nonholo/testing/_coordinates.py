@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis import invariants
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
 from nonholo.testing import _report as report
@@ -40,8 +41,6 @@ class CoordinateSamples:
                 self._place[index] = self._value(motion, 0.0)
 
     def _value(self, function: Callable[..., Any], *arguments: Any) -> np.ndarray:
-        from nonholo.base.numerics import double_precision
-
         with double_precision():
             return np.asarray(function(*arguments))
 

@@ -194,4 +194,5 @@ test_what_has_no_such_flow_is_refused = refusals(
         "must have a closed-form solution. Got SuslovTop. Leave method out",
     ),
     (lambda: nh.flow(SLEIGH, **_TIMES).displacement, "continuous flow"),
+    (lambda: jax.jit(nh.vector_field(nh.examples.sleigh_in_a_well().system))(0.0, np.ones(11)), "be a NumPy array"),
 )

@@ -52,8 +52,11 @@ def store(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize(
     "orbit",
-    [_orbit(save_every=5), _orbit(reconstruct=False), _orbit()[3:15:2], _orbit()[:0]],
-    ids=["thinned", "no poses", "slice", "empty"],
+    [
+        *(_orbit(save_every=5), _orbit(reconstruct=False), _orbit()[3:15:2], _orbit()[:0]),
+        nh.examples.sleigh_in_a_well().simulate(steps=2)[:0],
+    ],
+    ids=["thinned", "no poses", "slice", "empty", "empty under a potential"],
 )
 def test_partial_orbits_round_trip(orbit: nh.Orbit, tmp_path: Path) -> None:
     """Thinned, unreconstructed, sliced and empty orbits come back as they were."""

@@ -30,9 +30,10 @@ def test_starts_agree(discrete: nh.Discretization) -> None:
 
 def test_parts_of_a_thinned_orbit_are_thinned() -> None:
     """A part of a thinned orbit has the multipliers of single steps too, and is thinned by both strides."""
-    thin = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=24, save_every=6)
-    assert np.array_equal(thin[1:4].multipliers, thin.multipliers[1:3])
-    assert [part.save_every for part in (thin[1:4], thin[::2], thin[::2][1:])] == [6, 12, 12]
+    top = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=24, save_every=6)
+    for thin in (top, nh.examples.rolling_disk().simulate(steps=24, save_every=6)):
+        assert np.array_equal(thin[1:4].multipliers[:2], thin.multipliers[1:3])
+        assert [part.save_every for part in (thin[1:4], thin[::2], thin[::2][1:])] == [6, 12, 12]
 
 
 def test_shapes_of_an_orbit() -> None:

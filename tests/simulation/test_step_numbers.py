@@ -263,13 +263,13 @@ def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
 
 
 def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:
-    """The numbers of steps of crossings are those of the run, whatever rows are searched."""
-    whole = _whole("table on a sleigh")
-    found = nh.crossings(whole, nh.cusp)
-    later = nh.crossings(whole[20:], nh.cusp)
-    assert later.step.tolist() == found.step[found.step >= 20].tolist()
-    assert np.array_equal(later.states.step, later.step)
-    assert len(later)
+    """The numbers of steps of crossings are those of the run, whatever rows are searched and events it had."""
+    watched = STEPPED["coordinates"](steps=100, events=[_level])
+    for whole, event in ((_whole("table on a sleigh"), nh.cusp), (watched, _level)):
+        found, later = nh.crossings(whole, event), nh.crossings(whole[20:], event)
+        assert later.step.tolist() == found.step[found.step >= 20].tolist()
+        assert np.array_equal(later.states.step, later.step)
+        assert len(later)
 
 
 def test_events_without_poses_are_refused_where_forces_depend_on_them() -> None:

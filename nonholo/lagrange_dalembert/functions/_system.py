@@ -3,6 +3,7 @@
 Calls of JAX are compiled once for all of their numbers. Every call runs in a local 64-bit scope and gives NumPy arrays.
 """
 
+import dataclasses
 import difflib
 import functools
 import importlib
@@ -12,15 +13,23 @@ from typing import Any, ClassVar, Self
 import jax
 import numpy as np
 
+from nonholo import systems
 from nonholo.base.checks import array, assign, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
 from nonholo.base.traced import call_in_blocks
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert.functions._slips import AbstractYieldingSystem
 from nonholo.lagrange_dalembert.functions._tables import ROWS, ForceTable
-from nonholo.lagrange_dalembert.functions._traced import Bound, Resistance, checked_value, takes_time, with_parameters
-from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of, with_later_force
+from nonholo.lagrange_dalembert.functions._traced import (
+    Bound,
+    Resistance,
+    checked_value,
+    count_of,
+    rows_of,
+    takes_time,
+    with_parameters,
+)
+from nonholo.systems import force_of, parts_of, slips_of, with_later_force, without_slips
 
 
 class Parameters(Mapping[str, Any]):
@@ -91,18 +100,46 @@ def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | Non
     return array(where, value, shape, "Pass real numbers.") if shape else number(where, value)
 
 
-class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
-    """A system whose functions take its parameters last, where it has any.
+class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.DiscretizationT, systems.OrbitT]):
+    """A system whose functions take its parameters last, where it has any, and whose forms may yield.
 
     Attributes:
         functions: The fields that are such functions.
         of_time: How many arguments those have that may be called with the time after them.
         parameters: The numbers.
+        force: The parts of the force; forms may yield where contacts are among them.
     """
 
     functions: ClassVar[tuple[str, ...]]
     of_time: ClassVar[dict[str, int]] = {}
     parameters: Any
+    force: Any
+
+    @functools.cached_property
+    def slips(self) -> tuple[Any, ...]:
+        """The contacts whose forms may yield."""
+        return slips_of(parts_of(self.force))
+
+    @functools.cached_property
+    def holding(self: Any) -> Any:
+        """The system while the forms that may yield hold; itself if none may."""
+        parts = without_slips(parts_of(self.force))
+        return dataclasses.replace(self, force=force_of(parts)) if self.slips else self
+
+    @functools.cached_property
+    def free(self) -> Any:
+        """The system without the forms that may yield; itself if none may."""
+        return self.without(self.slips)
+
+    def without(self: Any, contacts: Any) -> Any:
+        """Return the system that holds, without the forms of some contacts."""
+        if not contacts:
+            return self.holding
+        rows = np.flatnonzero(~np.concatenate([each.rows for each in contacts]).any(axis=0))
+        forms = rows_of(self.constraint_forms, rows) if len(rows) else None
+        moves = self.constraint_velocities
+        velocities = {"constraint_velocities": rows_of(moves, rows)} if moves else {}  # of no rows: time stays
+        return dataclasses.replace(self.holding, constraint_forms=forms, **velocities)
 
     @functools.cached_property
     def table(self) -> ForceTable | None:
@@ -113,6 +150,26 @@ class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
     def applied(self) -> Callable[[Array, Array, Array], Array] | None:
         """The force as a function, where there is one."""
         return parts_of(self.force).get("function")
+
+    @functools.cached_property
+    def is_driven(self: Any) -> bool:
+        """Whether a force acts, or anything depends on time or moves by itself."""
+        acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
+        return acts or any(map(self.takes_time, self.of_time))
+
+    def takes_time(self, function: str) -> bool:
+        """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
+        return bool(self._time(function))
+
+    @functools.cached_property
+    def constraints(self: Any) -> int:
+        """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
+        return self.velocity_constraints + count_of(self.holonomic) + len(self.prescribed)
+
+    @functools.cached_property
+    def velocity_constraints(self: Any) -> int:
+        """The number of constraint forms."""
+        return count_of(self.constraint_forms)
 
     @property
     def has_parts(self: Any) -> bool:
@@ -139,6 +196,24 @@ class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
             arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
             parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
         assign(self, force=force_of(parts))
+
+    def _check_slips(self: Any, *others: Any) -> None:
+        """Refuse slips beside own discrete functions, of rows that mix forms, and of one form for two contacts."""
+        where, forms = f"{type(self).__name__}(force=...)", self.velocity_constraints
+        rows = [each.rows for each in self.slips]
+        have = [{*np.flatnonzero(each.any(axis=0))} for each in rows]
+        fits = [each.shape[1] == forms and len(each) == len(own) for each, own in zip(rows, have, strict=True)]
+        if not all(fits) or len(set().union(*have)) < sum(map(len, have)):
+            demand = f"have Slips with rows of {forms} numbers, one for each form that may yield, each form in one Slip"
+            got, remedy = f"{[each.tolist() for each in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
+            raise error(where, demand, got, remedy)
+        if rows and any(others):
+            raise error(where, "have no Slip beside own discrete functions", "both", "Leave the functions out.")
+
+    def _refuse_slips(self) -> None:
+        if self.slips:
+            remedy = "Run it by `simulate` or `iterate` of what `discretize` returned, or leave the slip out."
+            raise error(f"{type(self).__name__}(force=...)", "have forms that never yield", "a Slip", remedy)
 
     def _with_force(self, force: Any) -> Any:
         """Return the force with another one, which may take parameters or do without; beside one a table alone."""
@@ -219,12 +294,18 @@ class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
         p = dict(zip(self.parameters, numbers, strict=False))
         return self._with_fields(parameters=Parameters({}), **self._bound_fields(p, *numbers[len(p) :]))
 
-    def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
+    def discrete_map(self: Any, time_step: Any) -> systems.DiscretizationT:
+        """Return the discretized system, see `nonholo.discretize`."""
+        return room("_discretization").MAPS[self.orbits](self, time_step)
+
+    def _bound_fields(self: Any, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
         """Return the fields that are functions, with parameters within, and the force with rows of its table."""
         own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         parts |= {"table": ForceTable(*rows)} if rows else {}
-        return {name: each and Bound(each, p) for name, each in own.items()} | {"force": force_of(parts)}
+        motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
+        functions = {name: each and Bound(each, p) for name, each in own.items()}
+        return functions | {"force": force_of(parts), "prescribed": motions}
 
     @functools.cached_property
     def plain(self) -> Self:

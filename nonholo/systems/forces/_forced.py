@@ -299,10 +299,10 @@ class Forced(AbstractSystem):
     def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU, body covectors at configurations: by differences of a function, else exact."""
         g = self._at(configuration)
+        group, dim = self.group, self.group.dim
         if not self.terms:
-            return np.zeros((*g.shape[:-2], self.group.dim))
-        group = self.group
-        covectors = (_each(self._slope, g, group.dim) if callable(x) else x.covector(group, g) for x in self.terms)
+            return np.zeros((*g.shape[:-2], dim))
+        covectors = (_each(self._slope, g, dim) if callable(each) else each.covector(group, g) for each in self.terms)
         return functools.reduce(operator.add, covectors)
 
     def mean_force(self, g: Poses, W: Poses, h: Array, constant: Covectors, time: Any = None) -> Covectors:
@@ -330,8 +330,8 @@ class Forced(AbstractSystem):
         middle = g @ group.exp(group.log(W) / 2)
         if self.own_potential is not None:
             f = f + self._mean_slope(g, W, X, _each(self._slope, middle, group.dim))
-        driving = [self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)]
-        return f + np.reshape(driving, f.shape)
+        rows = zip(time + h / 2, middle, X / h, strict=True)
+        return f + np.reshape([self.driving_force(*row) for row in rows], X.shape)
 
     def _mean_slope(self, g: np.ndarray, W: np.ndarray, X: np.ndarray, pull: np.ndarray) -> np.ndarray:
         """Return -G of the function, from -dU in the middle."""
@@ -467,7 +467,7 @@ def central_differences(dim: int) -> tuple[Float[np.ndarray, "dim orders 2 dim"]
 
 
 def _each(function: Callable[[np.ndarray], Any], g: np.ndarray, *shape: int) -> np.ndarray:
-    """Return the values of a function of one matrix at all of them, or at none."""
+    """Return the values of a function of one matrix, which have a shape, at all of them."""
     return np.reshape([function(each) for each in g.reshape(-1, *g.shape[-2:])], (*g.shape[:-2], *shape))
 
 
