@@ -20,7 +20,8 @@ from nonholo.discrete import discretize
 from nonholo.ensembles._names import NO_NAME, OUTCOME, function_from, is_own
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.ensembles.distributions import AbstractDistribution, Direction, Normal, Uniform
-from nonholo.ensembles.stores import Output, SweepStore, standing_of
+from nonholo.ensembles.stores import SweepStore, standing_of
+from nonholo.io.datasets import columns_of
 from nonholo.simulation import flow, simulate
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop, VeselovaTop
 
@@ -273,8 +274,6 @@ def _fields(orbit: Any) -> dict[str, Field]:
     """Return what an orbit says of its states by name: poses as people know them, no impulse of the last state."""
     variables = io.datasets.variables_of(orbit).items()
     fields: dict[str, Field] = {name: (axes[1:], rows, labels) for name, (axes, rows, labels) in variables}
-    if not orbit.coordinates and "configuration" in fields:
-        fields |= io.datasets.separate_variables(orbit.space, fields.pop("configuration")[1])
     labels = {"long_name": "impulses of constraint on the way to the next state"}
     fields["multipliers"] = ("constraint",), orbit.multipliers, labels
     return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in fields.items() if name not in _LEFT_OUT}
@@ -360,24 +359,14 @@ def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None
     """Write the orbits of a finished store, those of each part to a file: their number, the time, all that varies."""
     names = [name for name, each in store.outputs.items() if each.dimensions[:1] == ("step",)]
     names.sort(key=lambda name: name != "time")
-    columns = ["orbit", *(column for name in names for column in _columns(name, store.outputs[name]))]
+    fields = [(name, store.outputs[name]) for name in names]
+    columns = ["orbit", *(c for name, each in fields for c in columns_of(name, each.shape[1:], each.attributes))]
     states = store.outputs["time"].shape[0] * store.design.members
     within_disk("dataset(file_format='csv')", _BYTES * states * len(columns), folder, "Free space, then call it again.")
     for part, begin, end in zip(SPLITS, (0, *ends), ends, strict=False):
         if begin < end:
             with io.places.new_file(folder / f"{part}.csv", overwrite=True) as file:
                 file.writelines(io.tables.table_lines(columns, _rows(store, names, begin, end)))
-
-
-def _columns(name: str, output: Output) -> Iterator[str]:
-    """Give the names of the numbers of a field: those of coordinates alone, others with that of the field."""
-    if len(output.shape) == 1:
-        yield name
-        return
-    labels = output.attributes.get("components") or [str(i) for i in range(output.shape[1])]
-    for place in np.ndindex(output.shape[1:]):
-        own = [labels[place[0]], *map(str, place[1:])]
-        yield "_".join(own if name == "configuration" else [name.replace("_configuration", ""), *own])
 
 
 def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator[list[np.ndarray]]:

@@ -201,6 +201,15 @@ def test_tables_have_the_numbers_of_the_store(folder: Path, tmp_path: Path) -> N
         assert np.array_equal(table["body_velocity_1"], data.body_velocity.values[orbits, :, 1].ravel())
 
 
+def test_tables_name_numbers_as_data_frames_do(tmp_path: Path) -> None:
+    """Columns of a top are those of `to_pandas`, so `fit` knows its quaternions."""
+    header = (nh.dataset("top", tmp_path / "t", orbits=2, steps=2, file_format="csv") / "train.csv").read_text()
+    orbit = nh.simulate(nh.discretize(system_of("top"), 0.1), restricted_velocity=(0.1, 0.2), steps=2)
+    columns = header.splitlines()[0].split(",")
+    assert columns == ["orbit", "time", *orbit.to_pandas().columns, "multipliers_0"]
+    assert "quaternion_w" in columns
+
+
 def test_a_stopped_call_is_resumed(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A call that was stopped when blocks were missing is resumed by the same call, with the same bits."""
     options: dict[str, Any] = {"orbits": 10, "steps": 6, "noise": 0.01, "rng": 3}
