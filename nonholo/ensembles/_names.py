@@ -5,7 +5,7 @@ import dataclasses
 import importlib
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,15 +115,6 @@ def numbering(number: Callable[[int], int]) -> Iterator[None]:
         raise ValueError(message) from failure
 
 
-def checked_reductions(where: str, reductions: Any, names: Collection[str], remedy: str) -> tuple[Any, ...]:
-    """Return reductions as a tuple; refuse what is neither a function nor one of the known names."""
-    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
-    for reduction in several:
-        if not (callable(reduction) or (isinstance(reduction, str) and reduction in names)):
-            raise error(where, "be names or functions", shown(reduction), remedy)
-    return several
-
-
 def force_numbers(system: Any) -> dict[str, Any]:
     """Return the numbers of the forces of the library that act on a system: none of two of one class.
 
@@ -213,12 +204,3 @@ def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
 def _short(value: Any) -> str:
     text = json.dumps(value)
     return text if len(text) <= 200 else f"{text[:200]}..."
-
-
-def entry_of(name: str, value: Any) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    """Return dimensions, rows and attributes of one array of what a task or a reduction returned."""
-    dimensions, rows, *rest = value if isinstance(value, tuple) else (None, value)
-    rows = np.asarray(rows)
-    if dimensions is None:
-        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
-    return tuple(dimensions), rows, dict(rest[0]) if rest else {}

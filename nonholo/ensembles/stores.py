@@ -10,7 +10,7 @@ import functools
 import json
 import math
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeAlias
 
@@ -24,11 +24,12 @@ from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
 from nonholo.base.results import Outcome
-from nonholo.ensembles._names import OUTCOME, array_name, entry_of
+from nonholo.ensembles._entries import ABSENT, Entries, entries_of
+from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
 
-ABSENT, RAISED = -128, 100
-"""Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
+RAISED = 100
+"""The outcome of members for which the task raised; the others are those of `Outcome`."""
 OUTCOMES = {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
 _MOST_MESSAGES = 20  # failures of a block whose messages are kept
 _PROBES = 8
@@ -80,7 +81,7 @@ class Results(NamedTuple):
 def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
     """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
     try:
-        return Results(_check(_entries(task(block), block.count), outputs, block.count), [])
+        return Results(_check(entries_of(task(block), block.count), outputs, block.count), [])
     except Exception as failure:
         if block.count == 1:
             arrays = {name: np.full((1, *each.shape), each.fill, each.dtype) for name, each in outputs.items()}
@@ -100,7 +101,7 @@ def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], membe
     first_failure = None
     for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
         try:
-            outputs = _outputs(_entries(task(block_at(member, 1)), 1))
+            outputs = _outputs(entries_of(task(block_at(member, 1)), 1))
         except Exception as failure:
             first_failure = first_failure or failure
             continue
@@ -116,10 +117,10 @@ def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> No
         own = task(block)
     except Exception:  # of some members: these are found when it runs
         return
-    _check(_entries(own, block.count), outputs, block.count)
+    _check(entries_of(own, block.count), outputs, block.count)
 
 
-def _outputs(entries: dict[str, Any]) -> dict[str, Output]:
+def _outputs(entries: Entries) -> dict[str, Output]:
     """Return what a task returns, with outcomes as CF conventions write flags."""
     labels = {"long_name": "how the member ended", "flag_values": list(OUTCOMES)}
     labels |= {"flag_meanings": " ".join(OUTCOMES.values())}
@@ -131,46 +132,9 @@ def _type_on_disk(rows: np.ndarray) -> str:
     return {"b": "int8", "i": "int64", "u": "uint64", "c": "complex128"}.get(rows.dtype.kind, "float64")
 
 
-def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
-    """Return dimensions, rows and attributes of all that a task returned, by name."""
-    if not isinstance(result, Mapping):
-        result = {"result": result}
-    return {array_name("task(...)", name): _entry(name, value, count) for name, value in result.items()}
-
-
-def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    dimensions, rows, attributes = entry_of(name, value)
-    if len(dimensions) != (rows := _rows(name, rows, count)).ndim - 1:
-        got = f"{len(dimensions)} dimensions for shape {rows.shape}"
-        raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
-    return dimensions, rows, attributes
-
-
-def _rows(name: str, rows: np.ndarray, count: int) -> np.ndarray:
-    """Return one row for each member."""
-    if rows.dtype.kind not in "biufc":
-        raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", "Return numbers.")
-    if rows.ndim == 0 or len(rows) != count:
-        got = f"shape {rows.shape} for {count} members"
-        raise error(f"task(...)[{name!r}]", "have a leading member axis", got, "Keep that axis.")
-    if name == OUTCOME:
-        rows = _codes(rows)
-    if 0 in rows.shape[1:]:
-        raise error(f"task(...)[{name!r}]", "hold numbers", f"shape {rows.shape}", "Leave it out.")
-    return rows
-
-
-def _codes(rows: np.ndarray) -> np.ndarray:
-    """Return the outcomes that a task gives its members."""
-    if rows.ndim != 1 or rows.dtype.kind not in "biu" or not ((rows > ABSENT) & (rows < -ABSENT)).all():
-        got = f"{rows.dtype} of shape {rows.shape}, such as {rows.flat[0]}"
-        raise error(f"task(...)[{OUTCOME!r}]", "be a number from -127 to 127 of each member", got, "Number them so.")
-    return rows.astype(np.int8)
-
-
-def _check(entries: dict[str, Any], outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
+def _check(entries: Entries, outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
     """Return the rows of a block as they are written, refused if they are not what the first members had."""
-    rows_by_name = {name: rows for name, (_, rows, _) in entries.items()}
+    rows_by_name = {name: entry.values for name, entry in entries.items()}
     rows_by_name.setdefault(OUTCOME, np.zeros(count, dtype=np.int8))
     if rows_by_name.keys() != outputs.keys():
         got = f"{sorted(rows_by_name)} instead of {sorted(outputs)}"
