@@ -6,7 +6,7 @@ import importlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -23,11 +23,8 @@ _LAST = re.compile(r"(\w+)_(\d+)")
 _MEMBER = re.compile(r"This is member (\d+)\.")
 
 
-class Axes(NamedTuple):
-    """The dimensions of an array and their lengths."""
-
-    dimensions: tuple[str, ...]
-    shape: tuple[int, ...]
+Axes: TypeAlias = tuple[tuple[str, ...], tuple[int, ...]]
+"""The dimensions of an array and their lengths."""
 
 
 def component_name(name: str) -> str:

@@ -20,7 +20,7 @@ from nonholo.base.progress import progress_bar
 from nonholo.ensembles import stores
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from
-from nonholo.ensembles._names import NO_NAME, Axes, check_dimensions, differences, function_from, function_name, is_own
+from nonholo.ensembles._names import NO_NAME, check_dimensions, differences, function_from, function_name, is_own
 from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
 from nonholo.ensembles.designs import Design, Grid, MemberBlock, RandomDesign, axis_dimensions, block_of
@@ -92,7 +92,7 @@ def sweep(
     store = checked_path("sweep(store=...)", store)
     _check_task(task, design)
     if resume and store.exists():
-        sweep_store = open_store(store)
+        sweep_store = open_store(store, "sweep(store=...)")
         task = _same_task(sweep_store, task, design)
     else:
         sweep_store = _begin(task, design, store, block, scenario, progress=progress)
@@ -188,7 +188,7 @@ def resume(
     if kind != io.places.SWEEP_FORMAT:
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
-    sweep_store = open_store(store)
+    sweep_store = open_store(store, "resume(store=...)")
     work = Work(sweep_store, _restored_task(sweep_store, task, trust=trust))
     if members is not None:
         work = work._replace(store=_grow(sweep_store, members))
@@ -276,9 +276,9 @@ def _check_names(design: Design, draws: dict[str, Output], results: dict[str, Ou
     for name in filter(draws.__contains__, results):
         raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
-    coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
+    coordinates = {name: (axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
     outputs = (draws | results).items()
-    check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
+    check_dimensions({n: (members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
 
 
 def _grow(store: SweepStore, members: Any) -> SweepStore:
@@ -368,7 +368,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
-    sweep_store = open_store(checked_path(_CSV, store))
+    sweep_store = open_store(checked_path(_CSV, store), _CSV)
     task = _task_with_poses(sweep_store)
     io.places.check_file(target, overwrite=overwrite)
     blocks = [block for block, _ in sweep_store.marks() if block < sweep_store.layout.blocks]

@@ -5,6 +5,7 @@ import functools
 import hashlib
 import importlib
 import inspect
+import itertools
 import json
 import shlex
 from collections.abc import Callable, Iterator
@@ -20,7 +21,7 @@ from nonholo.discrete import discretize
 from nonholo.ensembles._names import NO_NAME, OUTCOME, function_from, is_own
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.ensembles.distributions import AbstractDistribution, Direction, Normal, Uniform
-from nonholo.ensembles.stores import SweepStore, standing_of
+from nonholo.ensembles.stores import RAISED, SweepStore, standing_of
 from nonholo.io.datasets import columns_of
 from nonholo.simulation import flow, simulate
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop, VeselovaTop
@@ -111,7 +112,7 @@ class Family(NamedTuple):
     function: Callable[..., Any] | None = None
     version: int = 1
 
-    starts = "Arguments of the function that makes systems with starts are drawn. The system above is that of orbit 0."
+    starts = "Arguments of the function that makes systems with starts are drawn. The system above is the first one."
 
     def member(self, name: str, draws: dict[str, Any]) -> Member:
         """Return the system of an orbit, and how it starts."""
@@ -243,6 +244,11 @@ class DatasetTask:
         return observations
 
     @property
+    def parts(self) -> dict[str, tuple[int, int]]:
+        """The first orbit of each part of the split, and the first one after it."""
+        return dict(zip(SPLITS, itertools.pairwise((0, *self.ends)), strict=True))
+
+    @property
     def block(self) -> int:
         """Orbits of a block that make a good piece of work."""
         return max(1, min(_MEMBERS, _NUMBERS // (self.steps + 1) // 64))
@@ -281,9 +287,9 @@ def _fields(orbit: Any) -> dict[str, Field]:
 
 def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> dict[str, Any]:
     """Return the record of a data set whose store is finished."""
-    definition, first = task.definition, {name: rows[0] for name, rows in store.design.values(0, 1).items()}
+    definition, draws = task.definition, store.design.values(_first_that_ran(store), 1)
+    first = {name: rows[0] for name, rows in draws.items()}
     kind, parameters = io.provenance.described_system(definition.member(task.dataset, first)[0])
-    parts = zip(SPLITS, (0, *task.ends), task.ends, strict=False)
     return {
         "name": task.dataset,
         "title": definition.title,
@@ -295,7 +301,7 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
         "rng": store.design.seed,
         "orbits": store.design.members,
         **{name: getattr(task, name) for name in ("steps", "time_step", "noise")},
-        "split": {part: [begin, end] for part, begin, end in parts},
+        "split": {part: list(ends) for part, ends in task.parts.items()},
         "outcomes": standing_of(store.path).outcomes,
         "license": license_name,
         "format": file_format,
@@ -303,12 +309,19 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
     }
 
 
+def _first_that_ran(store: SweepStore) -> int:
+    """Return the number of the first orbit whose system could be made."""
+    pieces = map(store.layout.piece, range(store.layout.blocks))
+    rows = ((piece.first, np.flatnonzero(store.rows(OUTCOME, piece) != RAISED)) for piece in pieces)
+    return next(first + int(members[0]) for first, members in rows if members.size)
+
+
 def _command(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> str:
     """Return the command that writes it again."""
     if task.dataset == NO_NAME:
         return "the Python call nonholo.dataset"
-    ends, orbits = (0, *task.ends), store.design.members
-    split = "/".join(repr((end - begin) / orbits) for begin, end in zip(ends, task.ends, strict=False))
+    orbits = store.design.members
+    split = "/".join(repr((end - begin) / orbits) for begin, end in task.parts.values())
     options = {"orbits": orbits, "steps": task.steps, "time-step": task.time_step, "rng": store.design.seed}
     options |= {"noise": task.noise, "split": split, "format": file_format, "license": license_name}
     module, _, name = task.dataset.rpartition(":")
@@ -355,7 +368,7 @@ _LOADING = {
 _BYTES = 24.0  # of a number as text
 
 
-def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None:
+def write_tables(store: SweepStore, folder: Path, parts: dict[str, tuple[int, int]]) -> None:
     """Write the orbits of a finished store, those of each part to a file: their number, the time, all that varies."""
     names = [name for name, each in store.outputs.items() if each.dimensions[:1] == ("step",)]
     names.sort(key=lambda name: name != "time")
@@ -363,7 +376,7 @@ def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None
     columns = ["orbit", *(c for name, each in fields for c in columns_of(name, each.shape[1:], each.attributes))]
     states = store.outputs["time"].shape[0] * store.design.members
     within_disk("dataset(file_format='csv')", _BYTES * states * len(columns), folder, "Free space, then call it again.")
-    for part, begin, end in zip(SPLITS, (0, *ends), ends, strict=False):
+    for part, (begin, end) in parts.items():
         if begin < end:
             with io.places.new_file(folder / f"{part}.csv", overwrite=True) as file:
                 file.writelines(io.tables.table_lines(columns, _rows(store, names, begin, end)))

@@ -17,7 +17,7 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 import xarray
 import zarr
-from pydantic import AfterValidator, TypeAdapter, ValidationError
+from pydantic import AfterValidator, TypeAdapter
 from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo import io
@@ -238,7 +238,7 @@ class SweepStore:
             DamagedError: The mark cannot be read, or is not the one that was written.
         """
         mark = self._blocks.mark(block)
-        return None if mark is None else _mark_of(block, mark.about)
+        return None if mark is None else mark.about
 
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
@@ -255,7 +255,7 @@ class SweepStore:
         Raises:
             DamagedError: One is not, or the mark is not; the message names it and the damage.
         """
-        return _mark_of(block, self._blocks.sound(block).about)
+        return self._blocks.sound(block).about
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
@@ -296,7 +296,7 @@ class SweepStore:
     def _axis(self, name: str) -> np.ndarray:
         array = io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
         try:
-            values = io.blocks.read_chunk(self.path, name, array, (0,) * array.ndim)
+            values = io.blocks.Chunk(self.path, name, array, (0,) * array.ndim).read()
         except io.blocks.DamagedError as flaw:
             raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
@@ -316,7 +316,7 @@ class SweepStore:
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
             self._check_described(name, array)
-        return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
+        return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True, kind=_MARK)
 
     def _check_described(self, name: str, array: zarr.Array) -> None:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
@@ -325,14 +325,6 @@ class SweepStore:
         if json.dumps(there) != json.dumps(list(self.outputs[name].options(self.design, self.layout).values())):
             got = f"another one in '{self.path}'"
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
-
-
-def _mark_of(block: int, about: dict[str, Any]) -> Mark:
-    """Return what a mark says, as data."""
-    try:
-        return _MARK.validate_python(about)
-    except ValidationError:
-        raise io.blocks.DamagedError(f"the mark {block}.json is damaged") from None
 
 
 @functools.lru_cache(maxsize=16)
@@ -345,28 +337,26 @@ def create_store(
     path: Path, description: Data, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output], extra: Data
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
-    target, identity = path.resolve(), uuid.uuid4().hex
-    io.places.check_target(target, new="sweep(store=...)")
+    identity = uuid.uuid4().hex
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
     about: Data = {"format": io.places.SWEEP_FORMAT, "schema": io.places.SCHEMAS[io.places.SWEEP_FORMAT]}
     about |= {"made": identity, "finished": False, "sweep": json.dumps(content)} | extra
     about |= {"versions": io.provenance.versions_text(), "kernels": way_of_kernels()}
-    with io.places.new_beside(path) as part:
+    with io.places.new_store(path, new="sweep(store=...)") as part:
         group = io.blocks.new_group(part, about, io.metadata.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
         io.blocks.make_marks(group, part)
-        io.places.put_in_place(part, target, new="sweep(store=...)")
-    return SweepStore(target, identity)
+    return SweepStore(path.resolve(), identity)
 
 
-def open_store(path: str | Path) -> SweepStore:
+def open_store(path: str | Path, where: str | None = None) -> SweepStore:
     """Return the store of a sweep."""
-    return SweepStore(Path(path).resolve(), attributes_of(path)["made"])
+    return SweepStore(Path(path).resolve(), attributes_of(path, where)["made"])
 
 
-def attributes_of(path: str | Path) -> dict[str, Any]:
+def attributes_of(path: str | Path, where: str | None = None) -> dict[str, Any]:
     """Return the attributes of the store of a sweep, after checking that it is one of the schema that is read."""
-    return io.metadata.read_attributes(path, io.places.SWEEP_FORMAT)
+    return io.metadata.read_attributes(path, io.places.SWEEP_FORMAT, where)
 
 
 def _create_arrays(group: zarr.Group, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output]) -> None:

@@ -16,6 +16,7 @@ from refusals import refusals
 import nonholo as nh
 from nonholo.ensembles import DEFINITIONS
 from nonholo.ensembles.datasets import system_of
+from nonholo.ensembles.stores import RAISED
 
 DIGESTS = Path(__file__).parent / "dataset_definitions.json"
 FAMILIES = [name for name, each in DEFINITIONS.items() if "start_energy" not in each.distributions]
@@ -25,6 +26,11 @@ def sleighs(a: Any = nh.Uniform(0.2, 0.5), speed: Any = nh.Normal(0.0, 0.3, size
     """Sleighs of our own."""
     system = nh.ChaplyginSleigh(1.0, 1.0, a)
     return SimpleNamespace(system=system, configuration=np.eye(3), body_velocity=np.append(speed, 0.0))
+
+
+def few(a: Any = nh.Uniform(-1.0, 0.5)) -> SimpleNamespace:  # noqa: B008
+    """Sleighs that are not made for most arguments."""
+    return sleighs(a if a > 0 else [a], np.ones(2))
 
 
 def _written(folder: Path, name: Any = "sleigh", **options: Any) -> tuple[xarray.Dataset, dict[str, Any]]:
@@ -116,6 +122,15 @@ def test_a_function_of_our_own_makes_systems_with_their_starts(tmp_path: Path) -
     with pytest.raises(ValueError, match=r"unless trusted"):
         nh.resume(store)
     assert nh.resume(store, trust=True).load().identical(data)
+
+
+def test_orbits_whose_system_cannot_be_made_are_labeled(tmp_path: Path) -> None:
+    """The record has the first system that there is, also if it is not that of orbit 0."""
+    data, record = _written(tmp_path / "few", few, file_format="zarr")
+    first = int(np.argmax(data.a.values > 0))
+    assert (data.outcome.values == np.where(data.a > 0, 0, RAISED)).all()
+    assert first > 0
+    assert record["system"]["parameters"]["a"] == data.a.values[first]
 
 
 @pytest.mark.profile("routes", instead="test_a_function_of_our_own_makes_systems_with_their_starts")

@@ -74,7 +74,7 @@ def test_reductions_of_families_are_joined(tmp_path: Path) -> None:
     found = nh.sweep(mixed, nh.Grid({"a": [1.0, 2.0, 2.5, 3.0]}), tmp_path / "mixed.zarr")
     assert (found.outcome.values.tolist(), found.b.values.tolist()) == ([0, 0, 100, 0], [1, 2, np.iinfo(int).min, 3])
     task = nh.FamilyTask(sleigh, 0.1, 2, reductions=["final_state", lambda batch: {"final_time": batch.outcome}])
-    with pytest.raises(ValueError, match="return each name once. Got 'final_time'"):
+    with pytest.raises(ValueError, match=r"return each name once\. Got 'final_time'"):
         nh.sweep(task, GRID, tmp_path / "twice.zarr")
 
 
