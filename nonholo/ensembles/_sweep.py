@@ -7,7 +7,6 @@ member is tried, an empty store is made.
 import json
 import math
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -23,7 +22,7 @@ from nonholo.ensembles._family_task import FamilyTask, family_task_from
 from nonholo.ensembles._names import NO_NAME, check_dimensions, differences, function_from, function_name, is_own
 from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
-from nonholo.ensembles.designs import Design, Grid, MemberBlock, RandomDesign, axis_dimensions, block_of
+from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions, block_of
 from nonholo.ensembles.stores import Output, SweepStore, Task, attributes_of, open_store, standing_of
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -227,7 +226,7 @@ def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -
 
         do_all(work, scheduler, workers, take)
     if not store.is_finished:
-        store.finish()
+        store.blocks.finish({"finished": True})
 
 
 def _warn(message: str) -> None:
@@ -376,7 +375,8 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     if len(blocks) < sweep_store.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
     with io.places.new_file(target, overwrite=overwrite) as file:
-        values = [name for name, _ in _flat(block_of(sweep_store.design, 0, 1))]
+        one = block_of(sweep_store.design, 0, 1)
+        values = [column for name, rows in one.items() for column in io.datasets.columns_of(name, rows.shape[1:], {})]
         names = ["member", *values, "outcome", *io.datasets.column_names(task.discrete.system.group)]
         file.writelines(io.tables.table_lines(names, (_columns(sweep_store, task, block) for block in blocks)))
 
@@ -400,11 +400,5 @@ def _columns(store: SweepStore, task: EnsembleTask, block: int) -> list[np.ndarr
     outcome, time, compact = (store.rows(name, piece) for name in ("outcome", "final_time", "final_pose"))
     group = task.discrete.system.group
     pose = io.datasets.separate_rows(group, group.matrix_from_pose(compact))
-    return [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
-
-
-def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:
-    """Give every number of the values of members a name."""
-    for name, values in block.items():
-        for place in np.ndindex(values.shape[1:]):
-            yield "_".join([name, *map(str, place)]), values[:, *place]
+    values = (column for rows in members.values() for column in rows.reshape(piece.count, -1).T)
+    return [members.index, *values, outcome, time, *pose.T]

@@ -227,63 +227,38 @@ class SweepStore:
         document = json.loads((self.path / "zarr.json").read_text())
         return document["attributes"]["finished"] and "consolidated_metadata" in document
 
-    def write(self, piece: io.blocks.Piece, results: Results, mark: Mark) -> None:
-        """Write the chunks of a block, then its mark."""
-        self._blocks.write(piece.number, results.arrays, mark._asdict())
-
-    def mark(self, block: int) -> Mark | None:
-        """Return the mark of a block, None if the block is not finished.
-
-        Raises:
-            DamagedError: The mark cannot be read, or is not the one that was written.
-        """
-        mark = self._blocks.mark(block)
-        return None if mark is None else mark.about
-
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
-        for block in sorted(self._blocks.block_numbers()):
+        for block in sorted(self.blocks.block_numbers()):
             mark = None
             with contextlib.suppress(io.blocks.DamagedError):
-                mark = self.mark(block)
+                mark = self.blocks.mark(block)
             if mark is not None:
-                yield block, mark
-
-    def sound(self, block: int) -> Mark:
-        """Return the mark of a finished block, of which every chunk is sound.
-
-        Raises:
-            DamagedError: One is not, or the mark is not; the message names it and the damage.
-        """
-        return self._blocks.sound(block).about
+                yield block, mark.about
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
         _ = self.design
         try:
             for block in blocks:
-                self.sound(block)
+                self.blocks.sound(block)
         except io.blocks.DamagedError as flaw:
             remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
             raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
     def rows(self, name: str, piece: io.blocks.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
-        rows_of_block = self._blocks.rows(name, piece.place)
+        rows_of_block = self.blocks.rows(name, piece.place)
         return rows_of_block.reshape(piece.count, *rows_of_block.shape[len(piece.place) :])
 
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
-        self._blocks.prepare()
+        self.blocks.prepare()
         _ = self.design
-
-    def finish(self) -> None:
-        """Mark the sweep as finished, and consolidate the metadata."""
-        self._blocks.finish({"finished": True})
 
     def grow(self, members: int) -> "SweepStore":
         """Return the store with more members to do; a last block that was not full is computed again."""
-        _ = self._blocks  # whose arrays have the length of an earlier growth
+        _ = self.blocks  # whose arrays have the length of an earlier growth
         content, before = self._content, list(self.layout.sizes)
         changes = {"design": content["design"] | {"members": members}, "before": before}
         changes["layout"] = [[members], list(self.layout.chunk)]
@@ -309,7 +284,8 @@ class SweepStore:
         return json.loads(attributes_of(self.path)["sweep"])
 
     @functools.cached_property
-    def _blocks(self) -> io.blocks.BlockStore:
+    def blocks(self) -> io.blocks.BlockStore:
+        """The blocks, which the metadata describe."""
         array_of = functools.partial(io.blocks.opened_array, "resume(store=...)", self.path, is_writable=True)
         arrays = {name: array_of(name) for name in self.outputs}
         for name, array in arrays.items():

@@ -49,8 +49,10 @@ QUATERNION = ["qw", "qx", "qy", "qz"]
 def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
     """Return the poses of an orbit by name; headings and signs of quaternions continue from row to row.
 
+    There are none where poses are not known, or of so many numbers that nobody reads them.
+
     Args:
-        orbit: With poses.
+        orbit: The orbit.
         before: The heading or the quaternion of the state before the first one, in a row.
 
     Example:
@@ -58,12 +60,13 @@ def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None)
         >>> list(pose_variables(nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=3)))
         ['x', 'y', 'heading']
     """
-    group = orbit.system.group
-    stretch = Stretch(orbit.time, np.asarray(orbit.canonical_pose), orbit.turned)
+    group, pose = orbit.system.group, orbit.canonical_pose
+    if pose is None or pose.shape[1] > _MOST:
+        return {}
     if isinstance(group, ProductGroup):
-        return separate_variables(group, configurations(orbit.system, stretch.pose))
-    (rows,) = rows_of(orbit.system, [stretch], 1, before)
-    return _variables_of(group, rows[:, 1:])
+        return posed(group, configurations(orbit.system, pose))
+    (rows,) = rows_of(orbit.system, [Stretch(orbit.time, pose, orbit.turned)], 1, before)
+    return _along(("step",), _variables_of(group, rows[:, 1:]))
 
 
 def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Variables:
@@ -348,7 +351,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     """
     names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
     states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
-    columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
+    columns = {"time": _variable(orbit, "time")} | states | pose_variables(orbit)
     motion: Any = orbit.motion
     is_own = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
     has_multipliers = is_own and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
@@ -374,7 +377,9 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         return _described(orbit, rows) | {"time": time}
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
-    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | pose_variables(
+        orbit, before
+    )
     for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | states | compact
@@ -444,12 +449,6 @@ def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str
 
 def _is_known(orbit: Orbit, name: str) -> bool:
     return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
-
-
-def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
-    if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
-        return {}
-    return _along(("step",), pose_variables(orbit, before))
 
 
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:

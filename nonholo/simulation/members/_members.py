@@ -264,17 +264,13 @@ def check_systems(members: Members) -> None:
         at = int(np.argmax(~(step > 0)))
         remedy = f"Pass positive time steps. This is member {at}."
         raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
-    for member in np.flatnonzero(_doubtful(members)):
+    joint = members.joint_system
+    is_clear = not members.of_system or (joint is not None and joint.is_clear)  # that all of them, or each, can be made
+    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))):
         try:
             members.of(int(member))
         except ValueError as failure:
             raise refusal(int(member), failure) from None
-
-
-def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
-    """Return which members have to be built to know that they can be."""
-    is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
-    return np.broadcast_to(~np.asarray(is_clear), len(members))
 
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
