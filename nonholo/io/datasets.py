@@ -49,7 +49,7 @@ QUATERNION = ["qw", "qx", "qy", "qz"]
 def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
     """Return the poses of an orbit by name; headings and signs of quaternions continue from row to row.
 
-    There are none where poses are not known, or of so many numbers that nobody reads them.
+    There are none where poses are not known, or have more than a thousand numbers.
 
     Args:
         orbit: The orbit.

@@ -204,7 +204,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         return room("_flow").at(self, times)
 
     def labeled_rows(self) -> dict[str, Labeled]:
-        """Return what it tells of its states by name."""
+        """Return its rows by name, with their dimensions and meanings."""
         rows, labels = self.rows(), (self._labels | _SHARED).items()
         return {name: (axes, rows[name], {"long_name": meaning}) for name, (axes, meaning) in labels if name in rows}
 

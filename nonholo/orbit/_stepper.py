@@ -20,7 +20,7 @@ State: TypeAlias = Float[np.ndarray, "L"]
 class First(NamedTuple):
     """A checked start in the numbers of its motion, and what the first step must have.
 
-    Those of many members are one, whose arrays have an axis of members in front.
+    The starts of many members are one start, whose arrays have an axis of members in front.
 
     Attributes:
         numbers: Of a body its canonical momenta and compact pose, which is empty where none is needed; in coordinates
@@ -32,7 +32,7 @@ class First(NamedTuple):
     demand: np.ndarray | None = None
 
     def of(self, members: int | slice) -> "First":
-        """Return the start of one member, or those of some."""
+        """Return the start of one member, or the starts of some."""
         return First(tuple(x[members] for x in self.numbers), None if self.demand is None else self.demand[members])
 
     @property
