@@ -209,7 +209,7 @@ def check_suffix(path: str | Path, where: str) -> None:
     check_assertions(where)
     if (suffix := Path(path).suffix.lower()) in _OTHER_FORMATS:
         store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
-        remedy = f"{store}, or {how}." if how and where == _SAVED else f"{store}."
+        remedy = f"{store}, or {how}." if how and not where.startswith("sweep") else f"{store}."
         raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
 
 

@@ -190,9 +190,13 @@ def test_overwrite_never_replaces_anything_else(content: str, tmp_path: Path) ->
 )
 def test_suffixes_of_other_formats_are_refused(name: str, remedy: str, tmp_path: Path) -> None:
     """A store is not written under the suffix of another format, saved or run into, old or new."""
-    for write in (lambda: nh.save_orbit(_orbit(5), tmp_path / name), lambda: _orbit(5, store=tmp_path / name)):
-        with pytest.raises(ValueError, match=remedy):
-            write()
+    writers = {
+        "save_orbit": lambda path: nh.save_orbit(_orbit(5), path),
+        "simulate": lambda path: _orbit(5, store=path),
+    }
+    for owner, write in writers.items():
+        with pytest.raises(ValueError, match=f"^`{owner}.*{remedy}"):
+            write(tmp_path / name)
     assert not list(tmp_path.iterdir())
     nh.save_orbit(_orbit(5), tmp_path / "run.2")
     assert len(nh.load_orbit(tmp_path / "run.2")) == 6
