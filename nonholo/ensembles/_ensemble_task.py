@@ -13,7 +13,7 @@ from nonholo.base.checks import array, assign, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles import _names
-from nonholo.ensembles._entries import checked_reductions, joined, reduced
+from nonholo.ensembles._entries import checked_reductions, join_results, reduced
 from nonholo.ensembles._names import function_from, function_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
@@ -116,7 +116,7 @@ class EnsembleTask:
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it; under forces that differ one by one."""
         if of_forces := [name for name in block if _names.is_force_number(self.discrete.system, name)]:
-            return joined([([member], self._member(block, member, of_forces)) for member in range(block.count)])
+            return join_results([([member], self._member(block, member, of_forces)) for member in range(block.count)])
         parameters = {name: block[name] for name in block if name in self._fields}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         run |= _rows_of_starts(self.start, block)

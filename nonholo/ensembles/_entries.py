@@ -67,14 +67,14 @@ def _codes(where: str, rows: np.ndarray) -> np.ndarray:
     return rows.astype(np.int8)
 
 
-def _attributes(where: str, given: Any = None) -> dict[str, Any]:
+def _attributes(where: str, pairs: Any = None) -> dict[str, Any]:
     """Return the attributes of an array, which a store has as JSON."""
     try:
-        attributes = dict(given or {})
+        attributes = dict(pairs or {})
         json.dumps(attributes)
     except (TypeError, ValueError):
         remedy = "Return a dictionary of texts, numbers and lists."
-        raise error(where, "have attributes that JSON has", shown(given), remedy) from None
+        raise error(where, "have attributes that JSON has", shown(pairs), remedy) from None
     return attributes
 
 
@@ -100,7 +100,7 @@ def reduced(
     return results
 
 
-def joined(parts: Sequence[tuple[Sequence[int], dict[str, Any]]]) -> dict[str, Any]:
+def join_results(parts: Sequence[tuple[Sequence[int], dict[str, Any]]]) -> dict[str, Any]:
     """Return the results of parts of a block, which come with the places of their members, in the order of these."""
     if len(parts) == 1:
         return parts[0][1]

@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles import _names
-from nonholo.ensembles._entries import checked_reductions, joined, reduced
+from nonholo.ensembles._entries import checked_reductions, join_results, reduced
 from nonholo.ensembles._names import component_of, function_from, function_name, with_components
 from nonholo.ensembles._reductions import last_states
 from nonholo.ensembles.designs import MemberBlock
@@ -114,7 +114,7 @@ class FamilyTask:
             numbers = (block.first + np.array(members)).tolist()
             batch = self._ensemble([each[member][0] for member in members], starts, numbers)
             parts.append((members, reduced(_where("reductions"), batch, self.reductions, {_FINAL: _final_state})))
-        return joined(parts)
+        return join_results(parts)
 
     def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""

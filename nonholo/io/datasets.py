@@ -374,7 +374,7 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     if not orbit.is_compact:
         rows = {name: Variable(("step", *axes), *rest) for name, (axes, *rest) in orbit.labeled_rows().items()}
         time = Variable(("step",), orbit.time, {"long_name": "time"})
-        return _described(orbit, rows) | {"time": time}
+        return _with_names(orbit, rows) | {"time": time}
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
     states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | pose_variables(
@@ -399,10 +399,10 @@ def variables_of(orbit: Any) -> dict[str, Variable]:
         poses = separate_variables(orbit.space, orbit.space.identity[None])
         dataset = dataset.drop_vars({"configuration", "displacement"} - poses.keys(), errors="ignore")
     columns = dataset.reset_coords("time").data_vars.items()
-    return _described(orbit, {str(name): Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in columns})
+    return _with_names(orbit, {str(name): Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in columns})
 
 
-def _described(orbit: Any, variables: dict[str, Variable]) -> dict[str, Variable]:
+def _with_names(orbit: Any, variables: dict[str, Variable]) -> dict[str, Variable]:
     """Return variables but for empty rows, with attributes for their times and for names along their last axis."""
     names = _PARTS | ({"coordinate": list(orbit.coordinates)} if orbit.coordinates else {})
     whole = {name: variable for name, variable in variables.items() if 0 not in variable.shape[1:]}

@@ -71,10 +71,10 @@ def restore_system(kind: str, parameters: dict[str, Any]) -> Any:
         remedy = "Upgrade nonholo or, for a custom system, pass load_orbit(path, discrete=...)."
         raise error(WHERE, "hold a system of this version", repr(kind), remedy)
     arguments = {_ARGUMENTS.get(name, name): _restore(value) for name, value in parameters.items()}
-    return _made(kind, kind_of_system, arguments)
+    return _make(kind, kind_of_system, arguments)
 
 
-def _made(name: str, make: Callable[..., Any], parameters: dict[str, Any]) -> Any:
+def _make(name: str, make: Callable[..., Any], parameters: dict[str, Any]) -> Any:
     """Call what makes an object of a store, which checks what it gets; refuse parameters of another version."""
     try:
         return make(**parameters)
@@ -142,7 +142,7 @@ def _restore(value: Any) -> Any:
     if "kind" not in value:
         return restore_group(value)
     if value["kind"] in _FORCES:
-        return _made(value["kind"], _FORCES[value["kind"]], value["parameters"])
+        return _make(value["kind"], _FORCES[value["kind"]], value["parameters"])
     return restore_system(value["kind"], value["parameters"])
 
 
@@ -160,7 +160,7 @@ def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
         ready = importlib.import_module("nonholo.examples")
     if name not in ready.__all__ or not name.islower():
         raise error(WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
-    return _made(f"{READY}{name}", getattr(ready, name), parameters).system
+    return _make(f"{READY}{name}", getattr(ready, name), parameters).system
 
 
 class _Recorded(BaseModel):
