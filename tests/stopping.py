@@ -6,8 +6,7 @@ from typing import Any, TypeAlias
 
 import pytest
 
-from nonholo.ensembles.stores import SweepStore
-from nonholo.io.orbits import Stream
+from nonholo.io.blocks import BlockStore
 
 Failure: TypeAlias = type[BaseException] | BaseException
 
@@ -16,16 +15,15 @@ Failure: TypeAlias = type[BaseException] | BaseException
 def failing_at(block: int, failure: Failure = KeyboardInterrupt) -> Iterator[None]:
     """Let Ctrl-C come, or a failure, when a run or a sweep writes a block."""
     with pytest.MonkeyPatch.context() as patch:
-        for kind in (Stream, SweepStore):
-            patch.setattr(kind, "write", _failing(kind.write, block, failure))
+        patch.setattr(BlockStore, "write", _failing(BlockStore.write, block, failure))
         yield
 
 
 def _failing(write: Any, block: int, failure: Failure) -> Any:
-    def failing(self: Any, piece: Any, *rest: Any) -> None:
-        if getattr(piece, "number", piece) == block:
+    def failing(self: BlockStore, number: int, *rest: Any) -> None:
+        if number == block:
             raise failure
-        write(self, piece, *rest)
+        write(self, number, *rest)
 
     return failing
 

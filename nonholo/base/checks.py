@@ -418,11 +418,15 @@ def checked_path(where: str, value: Any) -> Path:
     return Path(text)
 
 
-def selection(where: str, value: Any) -> slice | np.ndarray:
-    """Return which rows are meant: a slice, a mask, or numbers of rows."""
-    rows = value if isinstance(value, slice | np.ndarray) else np.array(None)
-    if isinstance(rows, np.ndarray) and (rows.ndim != 1 or rows.dtype.kind not in "bi"):
-        raise error(where, "be a slice, a mask or an array of integers", shown(value), "Pass one of them.")
+def selection(where: str, value: Any, count: int) -> slice | np.ndarray:
+    """Return which of this many rows are meant: a slice, a mask, or numbers of rows."""
+    if isinstance(value, slice):
+        return value
+    rows = value if isinstance(value, np.ndarray) and value.ndim == 1 else np.array([None])
+    kind = rows.dtype.kind
+    if not (kind == "i" and ((-count <= rows) & (rows < count)).all()) and not (kind == "b" and len(rows) == count):
+        requirement = f"be a slice, a mask or an array of integers, of {count} rows"
+        raise error(where, requirement, shown(value), "Pass one of them.")
     return rows
 
 

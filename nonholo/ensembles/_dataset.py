@@ -97,7 +97,7 @@ def dataset(
     sweep(task, design, target / STORE, resume=True, progress=progress)
     store = open_store(target / STORE)
     if file_format == "csv":
-        write_tables(store, target, task.ends)
+        write_tables(store, target, task.parts)
     record = record_of(store, task, file_format, license_name)
     io.blocks.write_whole(target / CARD, card(record))
     io.blocks.write_whole(target / METADATA, json.dumps(record, indent=1, default=repr) + "\n")  # last: now it is whole

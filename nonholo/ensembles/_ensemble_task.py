@@ -3,17 +3,17 @@
 import copy
 import dataclasses
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from nonholo import io
-from nonholo.base.calls import call
 from nonholo.base.checks import array, assign, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles import _names
+from nonholo.ensembles._entries import checked_reductions, join_results, reduced
 from nonholo.ensembles._names import function_from, function_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
@@ -25,6 +25,7 @@ _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of a
 _LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
 _STEPS_EACH = 1 << 20  # the same for systems that run one by one
 
+_FUNCTIONS = {name: reduction.function for name, reduction in REDUCTIONS.items()}
 _KNOWN = f"Choose among {', '.join(REDUCTIONS)}, or pass a function of an Ensemble."
 RULE = "branch_function"
 """The key of a description for a branch rule that is a function."""
@@ -102,7 +103,7 @@ class EnsembleTask:
             discrete=as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
             steps=count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
             start=start[0] if start else None,
-            reductions=_names.checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
+            reductions=checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
             save_every=save_every,
             branch=branch,
             reconstruct=flag("EnsembleTask(reconstruct=...)", reconstruct),
@@ -115,18 +116,13 @@ class EnsembleTask:
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it; under forces that differ one by one."""
         if of_forces := [name for name in block if _names.is_force_number(self.discrete.system, name)]:
-            return _join([self._member(block, member, of_forces) for member in range(block.count)])
+            return join_results([([member], self._member(block, member, of_forces)) for member in range(block.count)])
         parameters = {name: block[name] for name in block if name in self._fields}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         run |= _rows_of_starts(self.start, block)
         with _names.numbering(lambda member: block.first + member):
             batch = ensemble(self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run)
-        results: dict[str, Any] = {_names.OUTCOME: batch.outcome}
-        for each in self.reductions:
-            is_own = not isinstance(each, str)
-            own = call("EnsembleTask(reductions=...)", each, batch) if is_own else REDUCTIONS[each].function(batch)
-            _add(results, own)
-        return results
+        return reduced("EnsembleTask(reductions=...)", batch, self.reductions, _FUNCTIONS)
 
     @property
     def block(self) -> int:
@@ -199,25 +195,6 @@ def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     if RULE in entry:
         options["branch"] = function_from(entry[RULE])
     return EnsembleTask(io.provenance.restore_motion(entry, None), reductions=reductions, **options, **start)
-
-
-def _add(results: dict[str, Any], more: Any) -> None:
-    """Add what a reduction returned, refused if it would replace what another one did."""
-    entries = more if isinstance(more, Mapping) else {"result": more}
-    for name in entries:
-        if name in results:
-            raise error("EnsembleTask(reductions=...)", "return each name once", shown(name), "Rename one.")
-    results |= entries
-
-
-def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the rows of some members that were reduced one by one."""
-    together: dict[str, Any] = {}
-    for name, first in members[0].items():
-        dimensions, _, attributes = _names.entry_of(name, first)
-        whole = np.concatenate([_names.entry_of(name, each[name])[1] for each in members])
-        together[name] = dimensions, whole, attributes
-    return together
 
 
 def _check_starts(discrete: Discretization, start: Start | None, names: Sequence[str]) -> None:

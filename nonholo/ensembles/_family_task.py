@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.calls import call
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles import _names
-from nonholo.ensembles._names import component_of, entry_of, function_from, function_name, with_components
+from nonholo.ensembles._entries import checked_reductions, join_results, reduced
+from nonholo.ensembles._names import component_of, function_from, function_name, with_components
 from nonholo.ensembles._reductions import last_states
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.groups import components_of
@@ -74,7 +74,7 @@ class FamilyTask:
             "time_step": float(scale(_where("time_step"), self.time_step, "Pass a positive time step.")),
             "steps": count(_where("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
-            "reductions": _names.checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
+            "reductions": checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
             "save_every": None if every is None else count(_where("save_every"), every, "Pass steps, or None."),
         }
         vars(self).update(fields)
@@ -106,17 +106,15 @@ class FamilyTask:
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members, those with one system together, and reduce it."""
         each = [self._member({name: values[k] for name, values in block.items()}) for k in range(block.count)]
-        results: dict[str, tuple[Any, np.ndarray, Any]] = {}
         families = [getattr(system, "family", system) for system, _ in each]
+        parts = []
         for family in dict.fromkeys(families):
             members = [member for member, other in enumerate(families) if other == family]
             starts = {name: np.stack([each[member][1][name] for member in members]) for name in each[0][1]}
             numbers = (block.first + np.array(members)).tolist()
             batch = self._ensemble([each[member][0] for member in members], starts, numbers)
-            for name, (dimensions, rows, labels) in self._reduced(batch).items():
-                whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)
-                results.setdefault(name, (dimensions, whole, labels))[1][members] = rows
-        return results
+            parts.append((members, reduced(_where("reductions"), batch, self.reductions, {_FINAL: _final_state})))
+        return join_results(parts)
 
     def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""
@@ -136,14 +134,6 @@ class FamilyTask:
         run = {"steps": self.steps, "save_every": self.save_every}
         with _names.numbering(numbers.__getitem__):
             return ensemble(discretize(systems[0], self.time_step), parameters=parameters or None, **starts, **run)
-
-    def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
-        """Return dimensions, rows and labels of what is kept of members, by name."""
-        results: dict[str, Any] = {_names.OUTCOME: batch.outcome}
-        for reduction in self.reductions:
-            is_final = reduction == _FINAL
-            results |= _final_state(batch) if is_final else call("FamilyTask(reductions=...)", reduction, batch)
-        return {name: entry_of(name, entry) for name, entry in results.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

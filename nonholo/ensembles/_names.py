@@ -5,8 +5,8 @@ import dataclasses
 import importlib
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -23,11 +23,8 @@ _LAST = re.compile(r"(\w+)_(\d+)")
 _MEMBER = re.compile(r"This is member (\d+)\.")
 
 
-class Axes(NamedTuple):
-    """The dimensions of an array and their lengths."""
-
-    dimensions: tuple[str, ...]
-    shape: tuple[int, ...]
+Axes: TypeAlias = tuple[tuple[str, ...], tuple[int, ...]]
+"""The dimensions of an array and their lengths."""
 
 
 def component_name(name: str) -> str:
@@ -113,15 +110,6 @@ def numbering(number: Callable[[int], int]) -> Iterator[None]:
     except ValueError as failure:
         message = _MEMBER.sub(lambda member: f"This is member {number(int(member[1]))}.", str(failure))
         raise ValueError(message) from failure
-
-
-def checked_reductions(where: str, reductions: Any, names: Collection[str], remedy: str) -> tuple[Any, ...]:
-    """Return reductions as a tuple; refuse what is neither a function nor one of the known names."""
-    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
-    for reduction in several:
-        if not (callable(reduction) or (isinstance(reduction, str) and reduction in names)):
-            raise error(where, "be names or functions", shown(reduction), remedy)
-    return several
 
 
 def force_numbers(system: Any) -> dict[str, Any]:
@@ -213,12 +201,3 @@ def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
 def _short(value: Any) -> str:
     text = json.dumps(value)
     return text if len(text) <= 200 else f"{text[:200]}..."
-
-
-def entry_of(name: str, value: Any) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    """Return dimensions, rows and attributes of one array of what a task or a reduction returned."""
-    dimensions, rows, *rest = value if isinstance(value, tuple) else (None, value)
-    rows = np.asarray(rows)
-    if dimensions is None:
-        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
-    return tuple(dimensions), rows, dict(rest[0]) if rest else {}

@@ -49,7 +49,7 @@ def do_block(work: Work, block: int) -> Done:
     store = store_of(work.store)
     mark = damage = None
     try:
-        mark = None if store.mark(block) is None else store.sound(block)
+        mark = None if store.blocks.mark(block) is None else store.blocks.sound(block).about
     except io.blocks.DamagedError as flaw:
         damage = str(flaw)
     piece, begin = store.layout.piece(block), time.perf_counter()
@@ -65,7 +65,7 @@ def do_block(work: Work, block: int) -> Done:
     names = (OUTCOMES.get(int(code), str(code)) for code in codes)  # a task may have outcomes of its own
     outcomes = dict(zip(names, counts.tolist(), strict=True))
     mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), results.messages)
-    store.write(piece, results, mark)
+    store.blocks.write(block, results.arrays, mark._asdict())
     return Done(block, mark, damage, io.provenance.versions_text())
 
 

@@ -7,7 +7,6 @@ member is tried, an empty store is made.
 import json
 import math
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -20,10 +19,10 @@ from nonholo.base.progress import progress_bar
 from nonholo.ensembles import stores
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from
-from nonholo.ensembles._names import NO_NAME, Axes, check_dimensions, differences, function_from, function_name, is_own
+from nonholo.ensembles._names import NO_NAME, check_dimensions, differences, function_from, function_name, is_own
 from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
-from nonholo.ensembles.designs import Design, Grid, MemberBlock, RandomDesign, axis_dimensions, block_of
+from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions, block_of
 from nonholo.ensembles.stores import Output, SweepStore, Task, attributes_of, open_store, standing_of
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -92,7 +91,7 @@ def sweep(
     store = checked_path("sweep(store=...)", store)
     _check_task(task, design)
     if resume and store.exists():
-        sweep_store = open_store(store)
+        sweep_store = open_store(store, "sweep(store=...)")
         task = _same_task(sweep_store, task, design)
     else:
         sweep_store = _begin(task, design, store, block, scenario, progress=progress)
@@ -188,7 +187,7 @@ def resume(
     if kind != io.places.SWEEP_FORMAT:
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
-    sweep_store = open_store(store)
+    sweep_store = open_store(store, "resume(store=...)")
     work = Work(sweep_store, _restored_task(sweep_store, task, trust=trust))
     if members is not None:
         work = work._replace(store=_grow(sweep_store, members))
@@ -227,7 +226,7 @@ def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -
 
         do_all(work, scheduler, workers, take)
     if not store.is_finished:
-        store.finish()
+        store.blocks.finish({"finished": True})
 
 
 def _warn(message: str) -> None:
@@ -276,9 +275,9 @@ def _check_names(design: Design, draws: dict[str, Output], results: dict[str, Ou
     for name in filter(draws.__contains__, results):
         raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
-    coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
+    coordinates = {name: (axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
     outputs = (draws | results).items()
-    check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
+    check_dimensions({n: (members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
 
 
 def _grow(store: SweepStore, members: Any) -> SweepStore:
@@ -368,7 +367,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
-    sweep_store = open_store(checked_path(_CSV, store))
+    sweep_store = open_store(checked_path(_CSV, store), _CSV)
     task = _task_with_poses(sweep_store)
     io.places.check_file(target, overwrite=overwrite)
     blocks = [block for block, _ in sweep_store.marks() if block < sweep_store.layout.blocks]
@@ -376,7 +375,8 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     if len(blocks) < sweep_store.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
     with io.places.new_file(target, overwrite=overwrite) as file:
-        values = [name for name, _ in _flat(block_of(sweep_store.design, 0, 1))]
+        one = block_of(sweep_store.design, 0, 1)
+        values = [column for name, rows in one.items() for column in io.datasets.columns_of(name, rows.shape[1:], {})]
         names = ["member", *values, "outcome", *io.datasets.column_names(task.discrete.system.group)]
         file.writelines(io.tables.table_lines(names, (_columns(sweep_store, task, block) for block in blocks)))
 
@@ -400,11 +400,5 @@ def _columns(store: SweepStore, task: EnsembleTask, block: int) -> list[np.ndarr
     outcome, time, compact = (store.rows(name, piece) for name in ("outcome", "final_time", "final_pose"))
     group = task.discrete.system.group
     pose = io.datasets.separate_rows(group, group.matrix_from_pose(compact))
-    return [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
-
-
-def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:
-    """Give every number of the values of members a name."""
-    for name, values in block.items():
-        for place in np.ndindex(values.shape[1:]):
-            yield "_".join([name, *map(str, place)]), values[:, *place]
+    values = (column for rows in members.values() for column in rows.reshape(piece.count, -1).T)
+    return [members.index, *values, outcome, time, *pose.T]

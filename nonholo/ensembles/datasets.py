@@ -5,6 +5,7 @@ import functools
 import hashlib
 import importlib
 import inspect
+import itertools
 import json
 import shlex
 from collections.abc import Callable, Iterator
@@ -20,7 +21,8 @@ from nonholo.discrete import discretize
 from nonholo.ensembles._names import NO_NAME, OUTCOME, function_from, is_own
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.ensembles.distributions import AbstractDistribution, Direction, Normal, Uniform
-from nonholo.ensembles.stores import Output, SweepStore, standing_of
+from nonholo.ensembles.stores import RAISED, SweepStore, standing_of
+from nonholo.io.datasets import columns_of
 from nonholo.simulation import flow, simulate
 from nonholo.systems import ChaplyginSleigh, MultidimensionalSleigh, SuslovTop, VeselovaTop
 
@@ -110,7 +112,7 @@ class Family(NamedTuple):
     function: Callable[..., Any] | None = None
     version: int = 1
 
-    starts = "Arguments of the function that makes systems with starts are drawn. The system above is that of orbit 0."
+    starts = "Arguments of the function that makes systems with starts are drawn. The system above is the first one."
 
     def member(self, name: str, draws: dict[str, Any]) -> Member:
         """Return the system of an orbit, and how it starts."""
@@ -242,6 +244,11 @@ class DatasetTask:
         return observations
 
     @property
+    def parts(self) -> dict[str, tuple[int, int]]:
+        """The first orbit of each part of the split, and the first one after it."""
+        return dict(zip(SPLITS, itertools.pairwise((0, *self.ends)), strict=True))
+
+    @property
     def block(self) -> int:
         """Orbits of a block that make a good piece of work."""
         return max(1, min(_MEMBERS, _NUMBERS // (self.steps + 1) // 64))
@@ -273,8 +280,6 @@ def _fields(orbit: Any) -> dict[str, Field]:
     """Return what an orbit says of its states by name: poses as people know them, no impulse of the last state."""
     variables = io.datasets.variables_of(orbit).items()
     fields: dict[str, Field] = {name: (axes[1:], rows, labels) for name, (axes, rows, labels) in variables}
-    if not orbit.coordinates and "configuration" in fields:
-        fields |= io.datasets.separate_variables(orbit.space, fields.pop("configuration")[1])
     labels = {"long_name": "impulses of constraint on the way to the next state"}
     fields["multipliers"] = ("constraint",), orbit.multipliers, labels
     return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in fields.items() if name not in _LEFT_OUT}
@@ -282,9 +287,9 @@ def _fields(orbit: Any) -> dict[str, Field]:
 
 def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> dict[str, Any]:
     """Return the record of a data set whose store is finished."""
-    definition, first = task.definition, {name: rows[0] for name, rows in store.design.values(0, 1).items()}
+    definition, draws = task.definition, store.design.values(_first_that_ran(store), 1)
+    first = {name: rows[0] for name, rows in draws.items()}
     kind, parameters = io.provenance.described_system(definition.member(task.dataset, first)[0])
-    parts = zip(SPLITS, (0, *task.ends), task.ends, strict=False)
     return {
         "name": task.dataset,
         "title": definition.title,
@@ -296,7 +301,7 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
         "rng": store.design.seed,
         "orbits": store.design.members,
         **{name: getattr(task, name) for name in ("steps", "time_step", "noise")},
-        "split": {part: [begin, end] for part, begin, end in parts},
+        "split": {part: list(ends) for part, ends in task.parts.items()},
         "outcomes": standing_of(store.path).outcomes,
         "license": license_name,
         "format": file_format,
@@ -304,12 +309,19 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
     }
 
 
+def _first_that_ran(store: SweepStore) -> int:
+    """Return the number of the first orbit whose system could be made."""
+    pieces = map(store.layout.piece, range(store.layout.blocks))
+    rows = ((piece.first, np.flatnonzero(store.rows(OUTCOME, piece) != RAISED)) for piece in pieces)
+    return next(first + int(members[0]) for first, members in rows if members.size)
+
+
 def _command(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> str:
     """Return the command that writes it again."""
     if task.dataset == NO_NAME:
         return "the Python call nonholo.dataset"
-    ends, orbits = (0, *task.ends), store.design.members
-    split = "/".join(repr((end - begin) / orbits) for begin, end in zip(ends, task.ends, strict=False))
+    orbits = store.design.members
+    split = "/".join(repr((end - begin) / orbits) for begin, end in task.parts.values())
     options = {"orbits": orbits, "steps": task.steps, "time-step": task.time_step, "rng": store.design.seed}
     options |= {"noise": task.noise, "split": split, "format": file_format, "license": license_name}
     module, _, name = task.dataset.rpartition(":")
@@ -356,28 +368,18 @@ _LOADING = {
 _BYTES = 24.0  # of a number as text
 
 
-def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None:
+def write_tables(store: SweepStore, folder: Path, parts: dict[str, tuple[int, int]]) -> None:
     """Write the orbits of a finished store, those of each part to a file: their number, the time, all that varies."""
     names = [name for name, each in store.outputs.items() if each.dimensions[:1] == ("step",)]
     names.sort(key=lambda name: name != "time")
-    columns = ["orbit", *(column for name in names for column in _columns(name, store.outputs[name]))]
+    fields = [(name, store.outputs[name]) for name in names]
+    columns = ["orbit", *(c for name, each in fields for c in columns_of(name, each.shape[1:], each.attributes))]
     states = store.outputs["time"].shape[0] * store.design.members
     within_disk("dataset(file_format='csv')", _BYTES * states * len(columns), folder, "Free space, then call it again.")
-    for part, begin, end in zip(SPLITS, (0, *ends), ends, strict=False):
+    for part, (begin, end) in parts.items():
         if begin < end:
             with io.places.new_file(folder / f"{part}.csv", overwrite=True) as file:
                 file.writelines(io.tables.table_lines(columns, _rows(store, names, begin, end)))
-
-
-def _columns(name: str, output: Output) -> Iterator[str]:
-    """Give the names of the numbers of a field: those of coordinates alone, others with that of the field."""
-    if len(output.shape) == 1:
-        yield name
-        return
-    labels = output.attributes.get("components") or [str(i) for i in range(output.shape[1])]
-    for place in np.ndindex(output.shape[1:]):
-        own = [labels[place[0]], *map(str, place[1:])]
-        yield "_".join(own if name == "configuration" else [name.replace("_configuration", ""), *own])
 
 
 def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator[list[np.ndarray]]:

@@ -10,25 +10,26 @@ import functools
 import json
 import math
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import xarray
 import zarr
-from pydantic import AfterValidator, TypeAdapter, ValidationError
+from pydantic import AfterValidator, TypeAdapter
 from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
 from nonholo.base.results import Outcome
-from nonholo.ensembles._names import OUTCOME, array_name, entry_of
+from nonholo.ensembles._entries import ABSENT, Entries, entries_of
+from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
 
-ABSENT, RAISED = -128, 100
-"""Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
+RAISED = 100
+"""The outcome of members for which the task raised; the others are those of `Outcome`."""
 OUTCOMES = {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
 _MOST_MESSAGES = 20  # failures of a block whose messages are kept
 _PROBES = 8
@@ -80,7 +81,7 @@ class Results(NamedTuple):
 def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
     """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
     try:
-        return Results(_check(_entries(task(block), block.count), outputs, block.count), [])
+        return Results(_check(entries_of(task(block), block.count), outputs, block.count), [])
     except Exception as failure:
         if block.count == 1:
             arrays = {name: np.full((1, *each.shape), each.fill, each.dtype) for name, each in outputs.items()}
@@ -100,7 +101,7 @@ def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], membe
     first_failure = None
     for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
         try:
-            outputs = _outputs(_entries(task(block_at(member, 1)), 1))
+            outputs = _outputs(entries_of(task(block_at(member, 1)), 1))
         except Exception as failure:
             first_failure = first_failure or failure
             continue
@@ -116,10 +117,10 @@ def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> No
         own = task(block)
     except Exception:  # of some members: these are found when it runs
         return
-    _check(_entries(own, block.count), outputs, block.count)
+    _check(entries_of(own, block.count), outputs, block.count)
 
 
-def _outputs(entries: dict[str, Any]) -> dict[str, Output]:
+def _outputs(entries: Entries) -> dict[str, Output]:
     """Return what a task returns, with outcomes as CF conventions write flags."""
     labels = {"long_name": "how the member ended", "flag_values": list(OUTCOMES)}
     labels |= {"flag_meanings": " ".join(OUTCOMES.values())}
@@ -131,46 +132,9 @@ def _type_on_disk(rows: np.ndarray) -> str:
     return {"b": "int8", "i": "int64", "u": "uint64", "c": "complex128"}.get(rows.dtype.kind, "float64")
 
 
-def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
-    """Return dimensions, rows and attributes of all that a task returned, by name."""
-    if not isinstance(result, Mapping):
-        result = {"result": result}
-    return {array_name("task(...)", name): _entry(name, value, count) for name, value in result.items()}
-
-
-def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    dimensions, rows, attributes = entry_of(name, value)
-    if len(dimensions) != (rows := _rows(name, rows, count)).ndim - 1:
-        got = f"{len(dimensions)} dimensions for shape {rows.shape}"
-        raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
-    return dimensions, rows, attributes
-
-
-def _rows(name: str, rows: np.ndarray, count: int) -> np.ndarray:
-    """Return one row for each member."""
-    if rows.dtype.kind not in "biufc":
-        raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", "Return numbers.")
-    if rows.ndim == 0 or len(rows) != count:
-        got = f"shape {rows.shape} for {count} members"
-        raise error(f"task(...)[{name!r}]", "have a leading member axis", got, "Keep that axis.")
-    if name == OUTCOME:
-        rows = _codes(rows)
-    if 0 in rows.shape[1:]:
-        raise error(f"task(...)[{name!r}]", "hold numbers", f"shape {rows.shape}", "Leave it out.")
-    return rows
-
-
-def _codes(rows: np.ndarray) -> np.ndarray:
-    """Return the outcomes that a task gives its members."""
-    if rows.ndim != 1 or rows.dtype.kind not in "biu" or not ((rows > ABSENT) & (rows < -ABSENT)).all():
-        got = f"{rows.dtype} of shape {rows.shape}, such as {rows.flat[0]}"
-        raise error(f"task(...)[{OUTCOME!r}]", "be a number from -127 to 127 of each member", got, "Number them so.")
-    return rows.astype(np.int8)
-
-
-def _check(entries: dict[str, Any], outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
+def _check(entries: Entries, outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
     """Return the rows of a block as they are written, refused if they are not what the first members had."""
-    rows_by_name = {name: rows for name, (_, rows, _) in entries.items()}
+    rows_by_name = {name: entry.values for name, entry in entries.items()}
     rows_by_name.setdefault(OUTCOME, np.zeros(count, dtype=np.int8))
     if rows_by_name.keys() != outputs.keys():
         got = f"{sorted(rows_by_name)} instead of {sorted(outputs)}"
@@ -263,63 +227,38 @@ class SweepStore:
         document = json.loads((self.path / "zarr.json").read_text())
         return document["attributes"]["finished"] and "consolidated_metadata" in document
 
-    def write(self, piece: io.blocks.Piece, results: Results, mark: Mark) -> None:
-        """Write the chunks of a block, then its mark."""
-        self._blocks.write(piece.number, results.arrays, mark._asdict())
-
-    def mark(self, block: int) -> Mark | None:
-        """Return the mark of a block, None if the block is not finished.
-
-        Raises:
-            DamagedError: The mark cannot be read, or is not the one that was written.
-        """
-        mark = self._blocks.mark(block)
-        return None if mark is None else _mark_of(block, mark.about)
-
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
-        for block in sorted(self._blocks.block_numbers()):
+        for block in sorted(self.blocks.block_numbers()):
             mark = None
             with contextlib.suppress(io.blocks.DamagedError):
-                mark = self.mark(block)
+                mark = self.blocks.mark(block)
             if mark is not None:
-                yield block, mark
-
-    def sound(self, block: int) -> Mark:
-        """Return the mark of a finished block, of which every chunk is sound.
-
-        Raises:
-            DamagedError: One is not, or the mark is not; the message names it and the damage.
-        """
-        return _mark_of(block, self._blocks.sound(block).about)
+                yield block, mark.about
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
         _ = self.design
         try:
             for block in blocks:
-                self.sound(block)
+                self.blocks.sound(block)
         except io.blocks.DamagedError as flaw:
             remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
             raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
     def rows(self, name: str, piece: io.blocks.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
-        rows_of_block = self._blocks.rows(name, piece.place)
+        rows_of_block = self.blocks.rows(name, piece.place)
         return rows_of_block.reshape(piece.count, *rows_of_block.shape[len(piece.place) :])
 
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
-        self._blocks.prepare()
+        self.blocks.prepare()
         _ = self.design
-
-    def finish(self) -> None:
-        """Mark the sweep as finished, and consolidate the metadata."""
-        self._blocks.finish({"finished": True})
 
     def grow(self, members: int) -> "SweepStore":
         """Return the store with more members to do; a last block that was not full is computed again."""
-        _ = self._blocks  # whose arrays have the length of an earlier growth
+        _ = self.blocks  # whose arrays have the length of an earlier growth
         content, before = self._content, list(self.layout.sizes)
         changes = {"design": content["design"] | {"members": members}, "before": before}
         changes["layout"] = [[members], list(self.layout.chunk)]
@@ -332,7 +271,7 @@ class SweepStore:
     def _axis(self, name: str) -> np.ndarray:
         array = io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
         try:
-            values = io.blocks.read_chunk(self.path, name, array, (0,) * array.ndim)
+            values = io.blocks.Chunk(self.path, name, array, (0,) * array.ndim).read()
         except io.blocks.DamagedError as flaw:
             raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
@@ -345,14 +284,15 @@ class SweepStore:
         return json.loads(attributes_of(self.path)["sweep"])
 
     @functools.cached_property
-    def _blocks(self) -> io.blocks.BlockStore:
+    def blocks(self) -> io.blocks.BlockStore:
+        """The blocks, which the metadata describe."""
         array_of = functools.partial(io.blocks.opened_array, "resume(store=...)", self.path, is_writable=True)
         arrays = {name: array_of(name) for name in self.outputs}
         for name, array in arrays.items():
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
             self._check_described(name, array)
-        return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
+        return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True, kind=_MARK)
 
     def _check_described(self, name: str, array: zarr.Array) -> None:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
@@ -361,14 +301,6 @@ class SweepStore:
         if json.dumps(there) != json.dumps(list(self.outputs[name].options(self.design, self.layout).values())):
             got = f"another one in '{self.path}'"
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
-
-
-def _mark_of(block: int, about: dict[str, Any]) -> Mark:
-    """Return what a mark says, as data."""
-    try:
-        return _MARK.validate_python(about)
-    except ValidationError:
-        raise io.blocks.DamagedError(f"the mark {block}.json is damaged") from None
 
 
 @functools.lru_cache(maxsize=16)
@@ -381,28 +313,26 @@ def create_store(
     path: Path, description: Data, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output], extra: Data
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
-    target, identity = path.resolve(), uuid.uuid4().hex
-    io.places.check_target(target, new="sweep(store=...)")
+    identity = uuid.uuid4().hex
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
     about: Data = {"format": io.places.SWEEP_FORMAT, "schema": io.places.SCHEMAS[io.places.SWEEP_FORMAT]}
     about |= {"made": identity, "finished": False, "sweep": json.dumps(content)} | extra
     about |= {"versions": io.provenance.versions_text(), "kernels": way_of_kernels()}
-    with io.places.new_beside(path) as part:
+    with io.places.new_store(path, new="sweep(store=...)") as part:
         group = io.blocks.new_group(part, about, io.metadata.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
         io.blocks.make_marks(group, part)
-        io.places.put_in_place(part, target, new="sweep(store=...)")
-    return SweepStore(target, identity)
+    return SweepStore(path.resolve(), identity)
 
 
-def open_store(path: str | Path) -> SweepStore:
+def open_store(path: str | Path, where: str | None = None) -> SweepStore:
     """Return the store of a sweep."""
-    return SweepStore(Path(path).resolve(), attributes_of(path)["made"])
+    return SweepStore(Path(path).resolve(), attributes_of(path, where)["made"])
 
 
-def attributes_of(path: str | Path) -> dict[str, Any]:
+def attributes_of(path: str | Path, where: str | None = None) -> dict[str, Any]:
     """Return the attributes of the store of a sweep, after checking that it is one of the schema that is read."""
-    return io.metadata.read_attributes(path, io.places.SWEEP_FORMAT)
+    return io.metadata.read_attributes(path, io.places.SWEEP_FORMAT, where)
 
 
 def _create_arrays(group: zarr.Group, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output]) -> None:

@@ -131,14 +131,56 @@ def opened_array(where: str, root: Path, name: str, shape: Any = None, *, is_wri
     return array.with_config({"write_empty_chunks": True})  # of NaN alone too: an impulse that is not known
 
 
+class Chunk(NamedTuple):
+    """One chunk of an array of a store: the store, the name of the array, the array, and the place of the chunk."""
+
+    root: Path
+    name: str
+    array: zarr.Array
+    index: Shape
+
+    def __str__(self) -> str:
+        return f"chunk {self.array.metadata.encode_chunk_key(self.index)} of the array {self.name}"
+
+    @property
+    def file(self) -> Path:
+        """The file that holds it."""
+        return self.root / self.name / self.array.metadata.encode_chunk_key(self.index)
+
+    @property
+    def crc(self) -> bytes:
+        """The CRC32C that it ends with, of which reading it checks that it is right; empty where there is none."""
+        with contextlib.suppress(OSError), self.file.open("rb") as file:
+            file.seek(-_CRC, 2)
+            return file.read()
+        return b""  # the file is not there, or too short
+
+    def read(self, *, with_nan: bool = False) -> np.ndarray:
+        """Return its numbers; NaN is wrong, unless it may be a result.
+
+        A missing one would be read as its fill value, NaN, so its file is looked for first.
+
+        Raises:
+            DamagedError: The chunk is missing or damaged.
+        """
+        if not self.file.is_file():
+            raise DamagedError("no such chunk")
+        try:
+            block = np.asarray(self.array.blocks[self.index])
+        except Exception as failure:
+            raise DamagedError(f"a corrupt one ({printable(str(failure))})") from failure
+        if not with_nan and _lacks_numbers(self.name, block):
+            raise DamagedError(_NAN)
+        return block
+
+
 def checked_block(store: "BlockStore", name: str, chunk: int, *, with_nan: bool = False) -> np.ndarray:
     """Return one chunk of rows; refuse one that is missing or damaged, with its name."""
-    array = store.array(name)
-    index = (chunk, *(0,) * (array.ndim - 1))
+    place = store.chunk(name, (chunk,))
     try:
-        return read_chunk(store.path, name, array, index, with_nan=with_nan)
+        return place.read(with_nan=with_nan)
     except DamagedError as wrong:
-        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if str(wrong) == _NAN else "")
+        requirement = f"hold {place}" + (" free of NaN" if str(wrong) == _NAN else "")
         raise error(WHERE, requirement, str(wrong), AGAIN) from None
 
 
@@ -148,40 +190,11 @@ def checked_array(store: "BlockStore", name: str, *, last: bool) -> np.ndarray:
     indices = list(np.ndindex(array.cdata_shape))
     if last and indices:
         return checked_block(store, name, len(indices) - 1)
-    if all(chunk_path(store.path, name, array, index).is_file() for index in indices):
+    if all(store.chunk(name, index).file.is_file() for index in indices):
         with contextlib.suppress(Exception):  # which one it is appears when they are read one by one
             if not _lacks_numbers(name, values := np.asarray(array[...])):
                 return values
     return np.concatenate([checked_block(store, name, chunk) for chunk in range(len(indices))])
-
-
-def chunk_name(name: str, array: zarr.Array, index: Shape) -> str:
-    """Return how messages call a chunk."""
-    return f"chunk {array.metadata.encode_chunk_key(index)} of the array {name}"
-
-
-def chunk_path(root: Path, name: str, array: zarr.Array, index: Shape) -> Path:
-    """Return the file of a chunk."""
-    return root / name / array.metadata.encode_chunk_key(index)
-
-
-def read_chunk(root: Path, name: str, array: zarr.Array, index: Shape, *, with_nan: bool = False) -> np.ndarray:
-    """Return one chunk; NaN is wrong, unless it may be a result.
-
-    A missing one would be read as its fill value, NaN, so its file is looked for first.
-
-    Raises:
-        DamagedError: The chunk is missing or damaged.
-    """
-    if not chunk_path(root, name, array, index).is_file():
-        raise DamagedError("no such chunk")
-    try:
-        block = np.asarray(array.blocks[index])
-    except Exception as failure:
-        raise DamagedError(f"a corrupt one ({printable(str(failure))})") from failure
-    if not with_nan and _lacks_numbers(name, block):
-        raise DamagedError(_NAN)
-    return block
 
 
 def _lacks_numbers(name: str, rows: np.ndarray) -> bool:
@@ -251,13 +264,13 @@ class BlockMark(NamedTuple):
         seal: The number of its chunks.
     """
 
-    about: dict[str, Any]
+    about: Any
     has_rows: bool
     log: tuple[NonNegativeInt, NonNegativeInt]
     seal: int
 
 
-_MARK = TypeAdapter(BlockMark)
+_MARK, _ANY = TypeAdapter(BlockMark), TypeAdapter(dict[str, Any])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -271,6 +284,7 @@ class BlockStore:
         arrays: The arrays by name, those that the metadata name.
         log: The array that grows, if there is one.
         holds_nan: Whether NaN may be a result.
+        kind: The type of the attributes of its blocks.
     """
 
     path: Path
@@ -279,6 +293,7 @@ class BlockStore:
     arrays: Mapping[str, zarr.Array]
     log: zarr.Array | None = None
     holds_nan: bool = False
+    kind: TypeAdapter[Any] = _ANY
 
     def write(self, block: int, rows: Rows, about: dict[str, Any], log: np.ndarray | None = None) -> None:
         """Write the chunks of a block, of none if there are no rows, and its rows of the log; then its mark."""
@@ -287,8 +302,7 @@ class BlockStore:
         begin = 0 if before is None else before.log[1]
         self._mark_file(block).unlink(missing_ok=True)
         for name in self.arrays if rows else ():
-            chunk = chunk_path(self.path, name, self.arrays[name], self._index(name, block))
-            chunk.unlink(missing_ok=True)  # zarr would read a damaged one first
+            self.chunk(name, self.layout.index(block)).file.unlink(missing_ok=True)  # zarr would read a damaged one
         end = begin if log is None or not len(log) else self._write_log(begin, log)
         if rows:
             sync(self._write_chunks(block, rows))
@@ -332,6 +346,7 @@ class BlockStore:
         try:
             check, _, text = file.read_text().partition(" ")
             mark = _MARK.validate_python(json.loads(text))
+            mark = mark._replace(about=self.kind.validate_python(mark.about))
         except FileNotFoundError:
             return None
         except UnicodeDecodeError:
@@ -371,12 +386,11 @@ class BlockStore:
             DamagedError: One is not, or the mark is not; the message names it and the damage.
         """
         mark = self.mark_of(block)
-        for name, index in self._chunks(block, mark):
-            array, with_nan = self.array(name), self.holds_nan or name == EVENTS
+        for chunk in self._chunks(block, mark):
             try:
-                read_chunk(self.path, name, array, index, with_nan=with_nan)
+                chunk.read(with_nan=self.holds_nan or chunk.name == EVENTS)
             except DamagedError as wrong:
-                raise DamagedError(f"{wrong}, {chunk_name(name, array, index)}") from None
+                raise DamagedError(f"{wrong}, {chunk}") from None
         self._check_seal(block, mark)
         return mark
 
@@ -413,34 +427,34 @@ class BlockStore:
     def _seal(self, block: int, mark: BlockMark) -> int:
         """Return one number of the store, the block's number, and the places and checksums of its chunks."""
         seal = hashlib.sha256(f"{self.made[:ORIGIN]} {block}".encode())
-        for name, index in self._chunks(block, mark):
-            chunk = chunk_path(self.path, name, self.array(name), index)
-            seal.update(f"\n{chunk.relative_to(self.path).as_posix()} {_crc(chunk).hex()}".encode())
+        for chunk in self._chunks(block, mark):
+            seal.update(f"\n{chunk.file.relative_to(self.path).as_posix()} {chunk.crc.hex()}".encode())
         return int.from_bytes(seal.digest()[: _BITS // 8])
 
     def _check_seal(self, block: int, mark: BlockMark) -> None:
         """Refuse a block of which a chunk is missing, or of another place or store."""
         if mark.seal == self._seal(block, mark):
             return
-        for name, index in self._chunks(block, mark):
-            if not chunk_path(self.path, name, self.array(name), index).is_file():
-                raise DamagedError(f"no such chunk, {chunk_name(name, self.array(name), index)}")
+        for chunk in self._chunks(block, mark):
+            if not chunk.file.is_file():
+                raise DamagedError(f"no such chunk, {chunk}")
         mark_name = self._mark_file(block).name
         raise DamagedError(f"a chunk of another place or store in block {block}, which {mark_name} seals")
 
-    def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, Shape]]:
-        """Return the chunks of a block by the names of their arrays."""
+    def _chunks(self, block: int, mark: BlockMark) -> Iterator[Chunk]:
+        """Return the chunks of a block."""
         if mark.has_rows and 0 <= block < self.layout.blocks:  # a mark may be that of another block
-            yield from ((name, self._index(name, block)) for name in sorted(self.arrays))
-        yield from ((EVENTS, (chunk, 0)) for chunk in range(*mark.log))
+            yield from (self.chunk(name, self.layout.index(block)) for name in sorted(self.arrays))
+        yield from (self.chunk(EVENTS, (number,)) for number in range(*mark.log))
 
     def array(self, name: str) -> zarr.Array:
         """Return an array of rows, or the log."""
         return self.log if name == EVENTS and self.log is not None else self.arrays[name]
 
-    def _index(self, name: str, block: int) -> Shape:
-        index = self.layout.index(block)
-        return index + (0,) * (self.arrays[name].ndim - len(index))
+    def chunk(self, name: str, index: Shape) -> Chunk:
+        """Return a chunk of an array by its place along the dimensions that are cut."""
+        array = self.array(name)
+        return Chunk(self.path, name, array, index + (0,) * (array.ndim - len(index)))
 
     def _mark_file(self, block: int) -> Path:
         return self.path / _MARKS / ("start.json" if block == BEFORE else f"{block}.json")
@@ -461,11 +475,3 @@ def make_marks(group: zarr.Group, path: Path) -> None:
     """Make the place of the marks of a new store."""
     group.create_group("run")  # or xarray would wonder what that folder is
     (path / _MARKS).mkdir()
-
-
-def _crc(chunk: Path) -> bytes:
-    """Return the CRC32C that a chunk ends with, of which reading a chunk checks that it is right."""
-    with contextlib.suppress(OSError), chunk.open("rb") as file:
-        file.seek(-_CRC, 2)
-        return file.read()
-    return b""  # there is none, or it is too short

@@ -3,11 +3,13 @@
 Poses are columns of numbers first: what they are called, and how one row continues another.
 """
 
+import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+import pandas
 import xarray
 
 from nonholo.base.types import Float
@@ -17,10 +19,29 @@ from nonholo.io.provenance import attributes, describe_group
 from nonholo.orbit import STATES, AbstractOrbit, Orbit, configurations, poses, unwrap
 from nonholo.systems import System
 
-Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
-"""Dimensions after those of the states, values and attributes, by name."""
 
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, and its attributes: xarray takes it as it is.
+
+    Attributes:
+        dims: Names; of poses by name those after the dimensions of the states.
+        values: Numbers.
+        attrs: Texts by name.
+    """
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: dict[str, Any]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the array."""
+        return self.values.shape
+
+
+Variables: TypeAlias = dict[str, Variable]
 _ENTRIES = ("row", "column")
+_PARTS = {"quaternion_component": list("wxyz")}
 HEADING = ["theta"]
 QUATERNION = ["qw", "qx", "qy", "qz"]
 
@@ -28,8 +49,10 @@ QUATERNION = ["qw", "qx", "qy", "qz"]
 def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
     """Return the poses of an orbit by name; headings and signs of quaternions continue from row to row.
 
+    There are none where poses are not known, or have more than a thousand numbers.
+
     Args:
-        orbit: With poses.
+        orbit: The orbit.
         before: The heading or the quaternion of the state before the first one, in a row.
 
     Example:
@@ -37,12 +60,13 @@ def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None)
         >>> list(pose_variables(nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=3)))
         ['x', 'y', 'heading']
     """
-    group = orbit.system.group
-    stretch = Stretch(orbit.time, np.asarray(orbit.canonical_pose), orbit.turned)
+    group, pose = orbit.system.group, orbit.canonical_pose
+    if pose is None or pose.shape[1] > _MOST:
+        return {}
     if isinstance(group, ProductGroup):
-        return separate_variables(group, configurations(orbit.system, stretch.pose))
-    (rows,) = rows_of(orbit.system, [stretch], 1, before)
-    return _variables_of(group, rows[:, 1:])
+        return posed(group, configurations(orbit.system, pose))
+    (rows,) = rows_of(orbit.system, [Stretch(orbit.time, pose, orbit.turned)], 1, before)
+    return _along(("step",), _variables_of(group, rows[:, 1:]))
 
 
 def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Variables:
@@ -64,13 +88,33 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
         for name, entry in separate_variables(factor, g[..., part, part]).items():
             name = "shape" if isinstance(factor, Translations) else name
             variables[f"{name}_{number}" if name in variables else name] = entry
-    return variables
+    return with_own_axes(variables)
+
+
+def with_own_axes(variables: Mapping[str, tuple[tuple[str, ...], np.ndarray, Any]]) -> Variables:
+    """Return variables whose dimensions have one length each: one of another length is named by its variable.
+
+    Example:
+        >>> robot = nh.ProductGroup(nh.Translations(2), nh.Translations(3))
+        >>> [variable.dims for variable in separate_variables(robot, robot.identity[None]).values()]
+        [('axis',), ('shape_2_axis',)]
+    """
+    lengths: dict[str, int] = {}
+
+    def own(name: str, dims: tuple[str, ...], sizes: tuple[int, ...]) -> tuple[str, ...]:
+        each = zip(dims, sizes[len(sizes) - len(dims) :], strict=True)
+        return tuple(dim if lengths.setdefault(dim, size) == size else f"{name}_{dim}" for dim, size in each)
+
+    return {name: Variable(own(name, dims, x.shape), x, attrs) for name, (dims, x, attrs) in variables.items()}
 
 
 def posed(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"], *before: str) -> Variables:
     """Return the same variables with their dimensions: any before those of the states, `step`."""
-    own = separate_variables(group, g).items()
-    return {name: ((*before, "step", *axes), values, dict(labels)) for name, (axes, values, labels) in own}
+    return _along((*before, "step"), separate_variables(group, g))
+
+
+def _along(states: tuple[str, ...], variables: Variables) -> Variables:
+    return {name: variable._replace(dims=(*states, *variable.dims)) for name, variable in variables.items()}
 
 
 def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
@@ -91,9 +135,10 @@ def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) 
     where, turns = rows[..., : len(position)], rows[..., len(position) :]
     variables: Variables = {}
     if position and set(position) <= set("xyz"):
-        variables |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
+        each = enumerate(position)
+        variables |= {name: Variable((), where[..., i], _labels("position", "length unit")) for i, name in each}
     elif position:
-        variables["position"] = ("axis",), where, _labels("position", "length unit")
+        variables["position"] = Variable(("axis",), where, _labels("position", "length unit"))
     return variables | _turn(group, turn, turns)
 
 
@@ -101,13 +146,14 @@ def _turn(group: AbstractMatrixGroup, turn: list[str], turns: np.ndarray) -> Var
     if not turn:
         return {}
     if turn == HEADING:
-        return {"heading": ((), turns[..., 0], _labels("angle of the body", "rad"))}
+        return {"heading": Variable((), turns[..., 0], _labels("angle of the body", "rad"))}
     if turn == QUATERNION:
         labels = _labels("unit quaternion w, x, y, z of the body, Hamilton's product", "1")
-        return {"quaternion": (("quaternion_component",), turns, labels)}
+        return {"quaternion": Variable(("quaternion_component",), turns, labels)}
     size = round(np.sqrt(turns.shape[-1]))
     name, meaning = ("rotation", "rotation") if group.is_rigid else ("configuration", "pose")
-    return {name: (_ENTRIES, turns.reshape(*turns.shape[:-1], size, size), _labels(f"{meaning} as a matrix", "1"))}
+    matrices = turns.reshape(*turns.shape[:-1], size, size)
+    return {name: Variable(_ENTRIES, matrices, _labels(f"{meaning} as a matrix", "1"))}
 
 
 def _labels(meaning: str, units: str) -> dict[str, str]:
@@ -241,25 +287,6 @@ def continuous(q: Float[np.ndarray, "... R 4"], before: np.ndarray | None = None
     return q * np.cumprod(signs, axis=-1)[..., : q.shape[-2], None]
 
 
-class Variable(NamedTuple):
-    """An array with the names of its dimensions, and its attributes: xarray takes it as it is.
-
-    Attributes:
-        dims: Names.
-        values: Numbers.
-        attrs: Texts by name.
-    """
-
-    dims: tuple[str, ...]
-    values: np.ndarray
-    attrs: dict[str, Any]
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of the array."""
-        return self.values.shape
-
-
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
 STEP = CANONICAL + "step"
@@ -324,7 +351,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     """
     names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
     states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
-    columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
+    columns = {"time": _variable(orbit, "time")} | states | pose_variables(orbit)
     motion: Any = orbit.motion
     is_own = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
     has_multipliers = is_own and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
@@ -333,7 +360,8 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
         columns["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
     number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
-    return xarray.Dataset(columns, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
+    dataset = xarray.Dataset(with_own_axes(columns), {"step": number}, attributes(orbit))
+    return dataset.set_coords("time").copy(deep=True)
 
 
 def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
@@ -344,11 +372,14 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
-        rows = {"time", *orbit.rows()}
-        return {name: each for name, each in variables_of(orbit).items() if name in rows}
+        rows = {name: Variable(("step", *axes), *rest) for name, (axes, *rest) in orbit.labeled_rows().items()}
+        time = Variable(("step",), orbit.time, {"long_name": "time"})
+        return _with_names(orbit, rows) | {"time": time}
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
-    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | pose_variables(
+        orbit, before
+    )
     for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | states | compact
@@ -362,13 +393,42 @@ def steps_apart(orbit: Any) -> dict[str, Variable]:
 
 
 def variables_of(orbit: Any) -> dict[str, Variable]:
-    """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
+    """Return what tables have of an orbit: all that its dataset tells, but matrices that poses by name stand for."""
     dataset: Any = orbit.to_dataset()
-    for variable in dataset.data_vars.values():
-        is_named = orbit.coordinates and "coordinate" in variable.dims
-        variable.attrs |= {"coordinates": "time"} | ({"components": list(orbit.coordinates)} if is_named else {})
-    own = {str(name): x for name, x in dataset.reset_coords("time").data_vars.items() if 0 not in x.shape[1:]}
-    return {name: Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in own.items()}
+    if not orbit.coordinates:
+        poses = separate_variables(orbit.space, orbit.space.identity[None])
+        dataset = dataset.drop_vars({"configuration", "displacement"} - poses.keys(), errors="ignore")
+    columns = dataset.reset_coords("time").data_vars.items()
+    return _with_names(orbit, {str(name): Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in columns})
+
+
+def _with_names(orbit: Any, variables: dict[str, Variable]) -> dict[str, Variable]:
+    """Return variables but for empty rows, with attributes for their times and for names along their last axis."""
+    names = _PARTS | ({"coordinate": list(orbit.coordinates)} if orbit.coordinates else {})
+    whole = {name: variable for name, variable in variables.items() if 0 not in variable.shape[1:]}
+    for name, (dims, _, attrs) in whole.items():
+        if name != "time":
+            attrs["coordinates"] = "time"
+        if dims[-1] in names:
+            attrs["components"] = names[dims[-1]]
+    return whole
+
+
+def columns_of(name: str, shape: tuple[int, ...], attributes: Mapping[str, Any]) -> list[str]:
+    """Return the names of the numbers of a variable: its own, then numbers or the names of its components.
+
+    Coordinates have their names alone.
+
+    Example:
+        >>> columns_of("configuration", (2,), {"components": ["x", "y"]}), columns_of("momentum", (2,), {})
+        (['x', 'y'], ['momentum_0', 'momentum_1'])
+    """
+    if not shape:
+        return [name]
+    components = attributes.get("components")
+    stem = name.removesuffix("configuration").removesuffix("_") if components else name
+    labels = itertools.product(components or range(shape[0]), *map(range, shape[1:]))
+    return ["_".join(filter(None, [stem, *map(str, place)])) for place in labels]
 
 
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
@@ -391,19 +451,9 @@ def _is_known(orbit: Orbit, name: str) -> bool:
     return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
 
 
-def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
-    if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
-        return {}
-    variables = pose_variables(orbit, before).items()
-    return {name: Variable(("step", *axes), values, dict(labels)) for name, (axes, values, labels) in variables}
-
-
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:
     axes, labels = labels_of(orbit.system, name)
     return Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)
-
-
-_PARTS = {"quaternion": tuple("wxyz")}
 
 
 def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
@@ -419,15 +469,10 @@ def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
         >>> table.shape, list(table.columns[-5:])
         ((4, 12), ['momentum_1', 'momentum_2', 'x', 'y', 'heading'])
     """
-    columns: dict[str, tuple[str, np.ndarray]] = {}
-    dataset: Any = orbit.to_dataset()
-    if not orbit.coordinates and "configuration" in dataset:
-        poses = posed(orbit.space, orbit.configuration)  # as people know them
-        dataset = dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(poses)
-    for name, variable in dataset.data_vars.items():
-        labels: list[Any] = [_PARTS.get(str(name), dataset[axis].values) for axis in variable.dims[1:]]
-        for place in np.ndindex(variable.shape[1:]):
-            parts = [str(words[i]) for words, i in zip(labels, place, strict=True)]
-            whole = parts if name == "configuration" and "coordinate" in variable.dims else [str(name), *parts]
-            columns["_".join(whole)] = "time", variable.values[:, *place]
-    return xarray.Dataset(columns, coords={"time": orbit.time}).to_dataframe()
+    variables = variables_of(orbit)
+    time = pandas.Index(variables.pop("time").values, name="time")
+    columns: dict[str, np.ndarray] = {}
+    for name, variable in variables.items():
+        names = columns_of(name, variable.shape[1:], variable.attrs)
+        columns |= dict(zip(names, variable.values.reshape(len(time), len(names)).T, strict=True))
+    return pandas.DataFrame(columns, index=time)

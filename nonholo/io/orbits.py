@@ -27,7 +27,7 @@ from nonholo.io import blocks
 from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of, without_padding
 from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, steps_apart, stored_variables
 from nonholo.io.metadata import read_attributes
-from nonholo.io.places import WHERE, check_target, new_beside, owner_of, put_in_place
+from nonholo.io.places import WHERE, new_store, owner_of
 from nonholo.io.provenance import attributes, attributes_of_text, restore_motion, system_of
 from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan, any_orbit
 
@@ -158,28 +158,25 @@ def create_stream(
     scenario: str | None = None,
 ) -> Stream:
     """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
-    target = path.resolve()
-    check_target(target, new="simulate(store=...)")
     metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
     run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "lead": plan.lead}
     metadata |= {"run": json.dumps(run)} | ({} if events is None else {"events": json.dumps(events)})
     metadata |= {} if scenario is None else attributes_of_text(scenario)
-    with new_beside(path) as part:
+    with new_store(path, new="simulate(store=...)") as part:
         store = blocks.new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
         if first.events is not None:
             rows = rows_of(first.events)
             size = max(1, min(_MOST, _NUMBERS // rows.shape[1]))
             blocks.create_array(zarr.open_group(part), EVENTS, Variable(("crossing", "entry"), rows, {}), 0, size)
         store.write(blocks.BEFORE, {}, said_of(opening))
-        put_in_place(part, target, new="simulate(store=...)")
-    return Stream(target, plan, first.has_poses, store.made)
+    return Stream(path.resolve(), plan, first.has_poses, store.made)
 
 
-def open_stream(path: str | Path) -> Stream:
+def open_stream(path: str | Path, where: str = "resume(store=...)") -> Stream:
     """Return the stream of a store that a run was written to."""
-    if "run" not in (attributes := read_attributes(path)):
+    if "run" not in (attributes := read_attributes(path, where=where)):
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
-        raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
+        raise error(where, "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(attributes["run"])
     return Stream(Path(path).resolve(), plan_of(attributes), run["reconstruct"], attributes["made"])
 
@@ -226,9 +223,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
         raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
     flags("save_orbit", overwrite=overwrite)
     path = checked_path("save_orbit(path=...)", path)
-    target = path.resolve()
-    check_target(target, overwrite=overwrite)
-    with new_beside(path) as part:
+    with new_store(path, overwrite=overwrite) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
         variables = stored_variables(orbit) | steps_apart(orbit)
         store = blocks.new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
@@ -236,7 +231,6 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
             (rows,) = store.layout.piece(block).place
             store.write(block, {name: variable.values[rows] for name, variable in variables.items()}, {})
         store.finish({})
-        put_in_place(part, target, overwrite=overwrite)
 
 
 @contextlib.contextmanager
@@ -365,7 +359,7 @@ class StoredPoses(NamedTuple):
 
 def open_poses(path: Path) -> StoredPoses:
     """Open a store, finished or not; a warning gives the length of an unfinished one."""
-    attributes = read_attributes(path)
+    attributes = read_attributes(path, where=_WHERE)
     try:
         shapes = json.loads(attributes["arrays"])
         remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."

@@ -23,7 +23,7 @@ from nonholo.base.checks import checked_path, error, printable
 FORMAT, SWEEP_FORMAT = "nonholo.orbit", "nonholo.sweep"
 SCHEMAS = {FORMAT: 5, SWEEP_FORMAT: 4}
 """Written by this version, and read. Those below are of before 0.3.0, from which on later versions read stores."""
-WHERE = "load_orbit(path=...)"  # in whose name a store that is read is refused
+WHERE, _SAVED = "load_orbit(path=...)", "save_orbit(path=...)"  # in whose names stores are refused
 _PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
 _OTHER_FORMATS = {
     **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), "use orbit.to_dataset().to_netcdf(path)"),
@@ -204,12 +204,12 @@ def format_of(path: str | Path) -> str | None:
         return None
 
 
-def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
+def check_suffix(path: str | Path, where: str) -> None:
     """Refuse, in the name of `where`, a path with the suffix of another format, and any where zarr does not work."""
     check_assertions(where)
     if (suffix := Path(path).suffix.lower()) in _OTHER_FORMATS:
         store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
-        remedy = f"{store}, or {how}." if how and where.startswith("save_orbit") else f"{store}."
+        remedy = f"{store}, or {how}." if how and not where.startswith("sweep") else f"{store}."
         raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
 
 
@@ -221,7 +221,7 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
         overwrite: Whether the caller asked to replace one.
         new: In whose name, if it has no such argument.
     """
-    check_suffix(path)
+    check_suffix(path, new or _SAVED)
     if not Path(path).exists():
         remove_remains(Path(path).resolve())  # which may put back what a killed process was about to replace
     if not Path(path).exists():
@@ -241,11 +241,21 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
         raise BlockingIOError(f"The store '{path}' is being written by {owner}, {remedy}")
 
 
-def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
+def _exists(path: str | Path, remedy: str, where: str = _SAVED) -> FileExistsError:
     return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
 
 
-def put_in_place(part: Path, target: Path, *, overwrite: bool = False, new: str | None = None) -> None:
+@contextlib.contextmanager
+def new_store(path: Path, *, overwrite: bool = False, new: str | None = None) -> Iterator[Path]:
+    """Give a place beside a path to make a store; it appears at the path when it is complete (see `check_target`)."""
+    target = path.resolve()
+    check_target(target, overwrite=overwrite, new=new)
+    with new_beside(path) as part:
+        yield part
+        _put_in_place(part, target, overwrite=overwrite, new=new)
+
+
+def _put_in_place(part: Path, target: Path, *, overwrite: bool, new: str | None) -> None:
     """Rename a complete store to its path; an older one there is replaced only if asked (see `check_target`)."""
     if not (overwrite and target.exists()):
         try:

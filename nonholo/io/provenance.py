@@ -69,8 +69,17 @@ def restore_system(kind: str, parameters: dict[str, Any]) -> Any:
     kind_of_system = getattr(systems, kind, None)
     if not (isinstance(kind_of_system, type) and issubclass(kind_of_system, AbstractSystem)):
         remedy = "Upgrade nonholo or, for a custom system, pass load_orbit(path, discrete=...)."
-        raise error("load_orbit(path=...)", "hold a system of this version", repr(kind), remedy)
-    return kind_of_system(**{_ARGUMENTS.get(name, name): _restore(value) for name, value in parameters.items()})
+        raise error(WHERE, "hold a system of this version", repr(kind), remedy)
+    arguments = {_ARGUMENTS.get(name, name): _restore(value) for name, value in parameters.items()}
+    return _make(kind, kind_of_system, arguments)
+
+
+def _make(name: str, make: Callable[..., Any], parameters: dict[str, Any]) -> Any:
+    """Call what makes an object of a store, which checks what it gets; refuse parameters of another version."""
+    try:
+        return make(**parameters)
+    except TypeError as failure:
+        raise error(WHERE, f"hold parameters of nonholo.{name}", str(failure), "Upgrade nonholo.") from None
 
 
 def describe_group(group: AbstractMatrixGroup) -> dict[str, Any]:
@@ -100,7 +109,7 @@ def restore_group(data: dict[str, Any]) -> AbstractMatrixGroup:
     if kind == "MatrixGroup":
         return MatrixGroup(data["basis"], data.get("form"))
     if kind not in _FAMILIES:
-        raise error("load_orbit(path=...)", "hold a group of this version", repr(kind), "Upgrade nonholo.")
+        raise error(WHERE, "hold a group of this version", repr(kind), "Upgrade nonholo.")
     return _FAMILIES[kind](data["n"])
 
 
@@ -133,7 +142,7 @@ def _restore(value: Any) -> Any:
     if "kind" not in value:
         return restore_group(value)
     if value["kind"] in _FORCES:
-        return _FORCES[value["kind"]](**value["parameters"])
+        return _make(value["kind"], _FORCES[value["kind"]], value["parameters"])
     return restore_system(value["kind"], value["parameters"])
 
 
@@ -151,10 +160,7 @@ def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
         ready = importlib.import_module("nonholo.examples")
     if name not in ready.__all__ or not name.islower():
         raise error(WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
-    try:
-        return getattr(ready, name)(**parameters).system
-    except TypeError as failure:
-        raise error(WHERE, f"hold parameters of nonholo.examples.{name}", str(failure), "Upgrade nonholo.") from None
+    return _make(f"{READY}{name}", getattr(ready, name), parameters).system
 
 
 class _Recorded(BaseModel):
@@ -248,7 +254,7 @@ def attributes_of_text(scenario: str) -> dict[str, str]:
     return {"scenario": scenario, "scenario_sha256": hashlib.sha256(scenario.encode()).hexdigest()}
 
 
-def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
+def restore_motion(attributes: dict[str, Any], motion: Any, owner: str = "load_orbit") -> Any:
     """Rebuild the motion of a store, or check that the one given is the stored one.
 
     Callables and groups of the user's own cannot be stored: such a motion has to be given. In coordinates, where stores
@@ -257,10 +263,11 @@ def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
     if motion is not None:
         kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
         remedy = "Pass that of the store, or None."
-        return _same(attributes, instance("load_orbit(discrete=...)", motion, kinds, "be a discretization", remedy))
+        where = f"{owner}(discrete=...)"
+        return _same(where, attributes, instance(where, motion, kinds, "be a discretization", remedy))
     options = json.loads(attributes["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
-    remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
+    remedy = f"Pass {owner}(path, discrete=...) with the {kind} that made this store."
     system = system_of(attributes, WHERE, remedy, missing_part(options))
     if kind not in _MOTIONS:
         raise error(WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
@@ -281,12 +288,12 @@ def system_of(attributes: dict[str, Any], where: str, remedy: str, missing: str 
     return recorded_system(name, parameters, None if group is None else restore_group(group))
 
 
-def _same(attributes: dict[str, Any], motion: Any) -> Any:
+def _same(where: str, attributes: dict[str, Any], motion: Any) -> Any:
     motion = on_route_of(attributes, motion)
     for key, value in identity_of(motion).items():
         if value != attributes[key]:  # JSON text: floating-point numbers are compared exactly
             got = f"{key} {value} instead of {attributes[key]}"
-            raise error("load_orbit(discrete=...)", "be the discretization of the store", got, "Pass that one.")
+            raise error(where, "be the discretization of the store", got, "Pass that one.")
     return motion
 
 

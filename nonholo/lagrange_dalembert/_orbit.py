@@ -22,6 +22,8 @@ from nonholo.systems import AbstractCoordinateSystem, Start
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
+Labeled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
+"""Dimensions after `step`, numbers and attributes."""
 
 _SHARED: Labels = {
     "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
@@ -201,6 +203,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             raise error("Orbit.at(...)", "be called on a flow", got, remedy)
         return room("_flow").at(self, times)
 
+    def labeled_rows(self) -> dict[str, Labeled]:
+        """Return its rows by name, with their dimensions and meanings."""
+        rows, labels = self.rows(), (self._labels | _SHARED).items()
+        return {name: (axes, rows[name], {"long_name": meaning}) for name, (axes, meaning) in labels if name in rows}
+
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN.
 
@@ -209,17 +216,13 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         import xarray
 
-        rows, labels = self.rows(), self._labels | _SHARED
-        variables: dict[str, Any] = {
-            name: (("step", *dimensions), rows[name], {"long_name": meaning})
-            for name, (dimensions, meaning) in labels.items()
-            if name in rows
-        }
+        datasets = importlib.import_module("nonholo.io.datasets")
+        variables = {name: (("step", *axes), *rest) for name, (axes, *rest) in self.labeled_rows().items()}
         coords: dict[str, Any] = {"step": self.step, "time": ("step", self.time, {"long_name": "time"})}
         if self.coordinates:
             coords["coordinate"] = np.array(self.coordinates, dtype=object)
         else:
-            variables |= importlib.import_module("nonholo.io.datasets").posed(self.space, self.configuration)
+            variables = datasets.with_own_axes(variables | datasets.posed(self.space, self.configuration))
         step = {} if self.time_step is None else {"time_step": self.time_step}
         return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
 

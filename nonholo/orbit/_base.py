@@ -238,7 +238,7 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     def chosen(self: SelfT, states: slice | np.ndarray) -> SelfT:
         """Return some of the states, by a slice, a mask or their numbers, each with the same `save_every` as before."""
-        at = selection(f"{type(self).__name__}.chosen(states=...)", states)
+        at = selection(f"{type(self).__name__}.chosen(states=...)", states, len(self))
         return self.of_rows({name: rows[at] for name, rows in self.rows().items()})
 
     def __getitem__(self: SelfT, states: slice) -> SelfT:

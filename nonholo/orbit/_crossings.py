@@ -49,7 +49,7 @@ class Crossings:
 
     def chosen(self, which: slice | np.ndarray) -> "Crossings":
         """Return some of the crossings."""
-        at = selection("Crossings.chosen(which=...)", which)
+        at = selection("Crossings.chosen(which=...)", which, len(self))
         after = None if self.after is None else self.after.chosen(at)
         return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at), after)
 

@@ -20,6 +20,8 @@ State: TypeAlias = Float[np.ndarray, "L"]
 class First(NamedTuple):
     """A checked start in the numbers of its motion, and what the first step must have.
 
+    The starts of many members are one start, whose arrays have an axis of members in front.
+
     Attributes:
         numbers: Of a body its canonical momenta and compact pose, which is empty where none is needed; in coordinates
             momentum, place and velocity.
@@ -28,6 +30,15 @@ class First(NamedTuple):
 
     numbers: tuple[np.ndarray, ...]
     demand: np.ndarray | None = None
+
+    def of(self, members: int | slice) -> "First":
+        """Return the start of one member, or the starts of some."""
+        return First(tuple(x[members] for x in self.numbers), None if self.demand is None else self.demand[members])
+
+    @property
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Momenta, and poses or places."""
+        return self.numbers[0], self.numbers[1]
 
 
 class Plan(NamedTuple):

@@ -319,8 +319,8 @@ def _refuse_ended(attributes: dict[str, Any]) -> None:
 
 
 def _open(owner: str, store: Any, discrete: Any, events: Any, *, throw: bool, progress: bool) -> tuple["Stream", Run]:
-    stream, attributes = io.orbits.open_stream(store), io.metadata.read_attributes(store)
-    motion = io.provenance.restore_motion(attributes, discrete)
+    stream, attributes = io.orbits.open_stream(store, f"{owner}(store=...)"), io.metadata.read_attributes(store)
+    motion = io.provenance.restore_motion(attributes, discrete, owner)
     backend = "jax" if motion.route_name == "definition" else "auto"
     stepper = stepper_of(motion, attributes.get("branch", "principal"), backend, with_poses=stream.reconstruct)
     watch = watch_of_store(owner, stream, stepper, events)

@@ -23,7 +23,7 @@ import nonholo as nh
 from nonholo.cli.scenario.files import Setting, parse_setting
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores import SweepStore
+from nonholo.io.blocks import BlockStore
 from nonholo.io.places import write_lock
 
 BODY = """
@@ -356,7 +356,7 @@ def test_a_stopped_sweep_is_resumed(stopped: Path, nonholo: Command) -> None:
 
 def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """Damaged chunks are named even if the disk is full before the last block, whichever that is, is written."""
-    write, written = SweepStore.write, []
+    write, written = BlockStore.write, []
 
     def full(*arguments: Any) -> None:
         written.append(arguments)
@@ -366,7 +366,7 @@ def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command, monkeyp
 
     for chunk in (stopped / "final_time" / "c").iterdir():
         chunk.unlink()
-    monkeypatch.setattr(SweepStore, "write", full)
+    monkeypatch.setattr(BlockStore, "write", full)
     ended = nonholo("resume", stopped, "--scheduler", "synchronous")
     assert_ends(ended, 1, "No space left on device. The sweep stands at", "of the array final_time. Block")
 

@@ -16,6 +16,7 @@ from refusals import refusals
 import nonholo as nh
 from nonholo.ensembles import DEFINITIONS
 from nonholo.ensembles.datasets import system_of
+from nonholo.ensembles.stores import RAISED
 
 DIGESTS = Path(__file__).parent / "dataset_definitions.json"
 FAMILIES = [name for name, each in DEFINITIONS.items() if "start_energy" not in each.distributions]
@@ -25,6 +26,11 @@ def sleighs(a: Any = nh.Uniform(0.2, 0.5), speed: Any = nh.Normal(0.0, 0.3, size
     """Sleighs of our own."""
     system = nh.ChaplyginSleigh(1.0, 1.0, a)
     return SimpleNamespace(system=system, configuration=np.eye(3), body_velocity=np.append(speed, 0.0))
+
+
+def few(a: Any = nh.Uniform(-1.0, 0.5)) -> SimpleNamespace:  # noqa: B008
+    """Sleighs that are not made for most arguments."""
+    return sleighs(a if a > 0 else [a], np.ones(2))
 
 
 def _written(folder: Path, name: Any = "sleigh", **options: Any) -> tuple[xarray.Dataset, dict[str, Any]]:
@@ -118,6 +124,15 @@ def test_a_function_of_our_own_makes_systems_with_their_starts(tmp_path: Path) -
     assert nh.resume(store, trust=True).load().identical(data)
 
 
+def test_orbits_whose_system_cannot_be_made_are_labeled(tmp_path: Path) -> None:
+    """The record has the first system that there is, also if it is not that of orbit 0."""
+    data, record = _written(tmp_path / "few", few, file_format="zarr")
+    first = int(np.argmax(data.a.values > 0))
+    assert (data.outcome.values == np.where(data.a > 0, 0, RAISED)).all()
+    assert first > 0
+    assert record["system"]["parameters"]["a"] == data.a.values[first]
+
+
 @pytest.mark.profile("routes", instead="test_a_function_of_our_own_makes_systems_with_their_starts")
 def test_inputs_of_our_own_system_are_drawn(tmp_path: Path) -> None:
     """A blade under a random push and torque: each orbit has its own, and the bits of the run that it names."""
@@ -199,6 +214,15 @@ def test_tables_have_the_numbers_of_the_store(folder: Path, tmp_path: Path) -> N
         for name in ("time", "heading", "observed_heading", "energy"):
             assert np.array_equal(table[name], data[name].values[orbits].ravel())
         assert np.array_equal(table["body_velocity_1"], data.body_velocity.values[orbits, :, 1].ravel())
+
+
+def test_tables_name_numbers_as_data_frames_do(tmp_path: Path) -> None:
+    """Columns of a top are those of `to_pandas`, so `fit` knows its quaternions."""
+    header = (nh.dataset("top", tmp_path / "t", orbits=2, steps=2, file_format="csv") / "train.csv").read_text()
+    orbit = nh.simulate(nh.discretize(system_of("top"), 0.1), restricted_velocity=(0.1, 0.2), steps=2)
+    columns = header.splitlines()[0].split(",")
+    assert columns == ["orbit", "time", *orbit.to_pandas().columns, "multipliers_0"]
+    assert "quaternion_w" in columns
 
 
 def test_a_stopped_call_is_resumed(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,6 +60,24 @@ def test_members_are_runs_of_the_systems_that_the_family_makes(tmp_path: Path) -
     assert parts.final_time.item() == 20 * 0.05
 
 
+def test_reductions_of_families_are_joined(tmp_path: Path) -> None:
+    """One array is a result, as of an `EnsembleTask`; systems that return other types than the first are named."""
+    speeds = nh.FamilyTask(sleigh, 0.1, 2, reductions=["final_state", lambda batch: batch.energy[:, 0]])
+    found = nh.sweep(speeds, GRID, tmp_path / "speeds.zarr", block=4)
+    assert np.array_equal(found.result.values, found.final_energy.values)
+
+    def fractions(batch: nh.Ensemble) -> dict:
+        a = batch.members.discrete.system.a
+        return {"b": np.full(len(batch), a) if a % 1 else np.full(len(batch), int(a))}
+
+    mixed = nh.FamilyTask(sleigh, 0.1, 2, reductions=fractions)
+    found = nh.sweep(mixed, nh.Grid({"a": [1.0, 2.0, 2.5, 3.0]}), tmp_path / "mixed.zarr")
+    assert (found.outcome.values.tolist(), found.b.values.tolist()) == ([0, 0, 100, 0], [1, 2, np.iinfo(int).min, 3])
+    task = nh.FamilyTask(sleigh, 0.1, 2, reductions=["final_state", lambda batch: {"final_time": batch.outcome}])
+    with pytest.raises(ValueError, match=r"return each name once\. Got 'final_time'"):
+        nh.sweep(task, GRID, tmp_path / "twice.zarr")
+
+
 def test_bodies_start_where_the_family_puts_them(tmp_path: Path) -> None:
     """The pose of the family is that of the run."""
     found = nh.sweep(nh.FamilyTask(placed, 0.1, 20), nh.Grid({"a": [0.2, 0.6]}), tmp_path / "placed.zarr")

@@ -20,8 +20,8 @@ from waiting import wait_for
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores import SweepStore, open_store
-from nonholo.io.blocks import Piece
+from nonholo.ensembles.stores import open_store
+from nonholo.io.blocks import BlockStore
 
 VICTIMS = ["worker", "all", "client"]
 
@@ -82,14 +82,14 @@ def test_interrupted_sweep_goes_on(scheduler: str, tmp_path: Path) -> None:
 
 def test_interruption_after_each_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Interrupted after each block in turn, a sweep keeps them all and comes to the same bits."""
-    write = SweepStore.write
+    write = BlockStore.write
 
-    def one_more(self: SweepStore, *rest: Any) -> None:
+    def one_more(self: BlockStore, *rest: Any) -> None:
         write(self, *rest)
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(SweepStore, "write", one_more)
+        patch.setattr(BlockStore, "write", one_more)
         for done in range(1, 7):
             with pytest.raises(KeyboardInterrupt, match=f"Stopped at {done} of 6 members"):
                 swept(tmp_path / "run.zarr", block=1, resume=True)
@@ -124,16 +124,16 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path) -> None:
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While one process writes a store, another one is refused, and told who writes it."""
     path, told = tmp_path / "run.zarr", []
-    write = SweepStore.write
+    write = BlockStore.write
 
-    def meanwhile(self: SweepStore, piece: Piece, *rest: Any) -> None:
-        if piece.number == 1:
+    def meanwhile(self: BlockStore, block: int, *rest: Any) -> None:
+        if block == 1:
             told.append(standing_of(path).owner)
             other = python(f"nh.resume({str(path)!r}, task=noisy)")
             told.append(other.communicate(timeout=100)[1].splitlines()[-1])
-        write(self, piece, *rest)
+        write(self, block, *rest)
 
-    monkeypatch.setattr(SweepStore, "write", meanwhile)
+    monkeypatch.setattr(BlockStore, "write", meanwhile)
     task, design, _ = faults.SWEEPS["noisy"]
     nh.sweep(task, design, path, "synchronous", block=1200)
     assert told[0].startswith(f"process {os.getpid()} on ")

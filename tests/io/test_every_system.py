@@ -15,6 +15,7 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.io import orbit_to_dataset
 from nonholo.io.metadata import read_attributes
 from nonholo.io.provenance import describe_group, restore_group
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert
 from nonholo.systems import SYSTEMS
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
@@ -124,6 +125,27 @@ def test_charts_have_their_own_dimension(tmp_path: Path) -> None:
     with xarray.open_zarr(tmp_path / "o.zarr", group="canonical", chunks=None) as compact:
         sizes = compact.sizes
     assert (sizes["component"], sizes["chart"], sizes["pose_component"]) == (4, 6, 12)
+
+
+@pytest.mark.parametrize(
+    ("group", "size"),
+    [(nh.SE(4), 5), (nh.ProductGroup(nh.Translations(2), nh.Translations(3)), 3)],
+    ids=["matrices", "vectors"],
+)
+def test_dimensions_of_tables_have_one_length(group: AbstractMatrixGroup, size: int, tmp_path: Path) -> None:
+    """Matrices of two sizes, or vectors of two lengths, do not share the name of a dimension."""
+    body = nh.LLSystem(group, inertia_operator=np.eye(group.dim), constraint_subspace=np.eye(group.dim)[1:])
+    orbit = _run(body)
+    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as found:
+        assert set(found.sizes.values()) <= {2, 3, 4, 7, group.dim - 1}
+    assert size in orbit.to_dataset(decoded=True).sizes.values()
+    assert len(orbit.to_pandas().columns) == 1 + 3 * group.dim - 1 + (20 if group == nh.SE(4) else 5)
+    free = GroupLagrangeDAlembert(group, lambda W, h: ((W - group.identity) ** 2).sum() / h, None)
+    told = nh.simulate(nh.discretize(free, 0.1), body_velocity=np.full(group.dim, 0.1), steps=2)
+    nh.save_orbit(told, tmp_path / "told.zarr")
+    again = nh.load_orbit(tmp_path / "told.zarr", discrete=told.motion)
+    assert list(again.to_pandas().columns) == list(told.to_pandas().columns)
 
 
 def test_right_invariant_labels(tmp_path: Path) -> None:

@@ -193,9 +193,13 @@ def test_overwrite_never_replaces_anything_else(content: str, tmp_path: Path) ->
 )
 def test_suffixes_of_other_formats_are_refused(name: str, remedy: str, tmp_path: Path) -> None:
     """A store is not written under the suffix of another format, saved or run into, old or new."""
-    for write in (lambda: nh.save_orbit(_orbit(5), tmp_path / name), lambda: _orbit(5, store=tmp_path / name)):
-        with pytest.raises(ValueError, match=remedy):
-            write()
+    writers = {
+        "save_orbit": lambda path: nh.save_orbit(_orbit(5), path),
+        "simulate": lambda path: _orbit(5, store=path),
+    }
+    for owner, write in writers.items():
+        with pytest.raises(ValueError, match=f"^`{owner}.*{remedy}"):
+            write(tmp_path / name)
     assert not list(tmp_path.iterdir())
     nh.save_orbit(_orbit(5), tmp_path / "run.2")
     assert len(nh.load_orbit(tmp_path / "run.2")) == 6
@@ -400,12 +404,20 @@ def test_only_what_is_ours_is_replaced(store: Path) -> None:
     assert nh.load_orbit(store).canonical_pose.tobytes() == orbit.canonical_pose.tobytes()
 
 
-def test_a_route_of_another_version_is_refused(tmp_path: Path) -> None:
-    """A store that names a route which this version does not have says so."""
+@pytest.mark.parametrize(
+    ("attribute", "added", "match"),
+    [
+        ("motion", {"route": "elliptic"}, "hold a run by a route of this version"),
+        ("parameters", {"color": 1.0}, r"hold parameters of nonholo\.ChaplyginSleigh\. Got .*color"),
+    ],
+    ids=["route", "parameter"],
+)
+def test_what_another_version_has_is_refused(attribute: str, added: dict[str, Any], match: str, tmp_path: Path) -> None:
+    """A store that names a route or a parameter which this version does not have says so."""
     path = tmp_path / "o.zarr"
     nh.save_orbit(_orbit(2), path)
-    motion = json.loads(read_attributes(path)["motion"])
-    assert motion["route"] == "scalar"
-    nh.io.blocks.edit_attributes(path, {"motion": json.dumps({**motion, "route": "elliptic"})})
-    with pytest.raises(ValueError, match="hold a run by a route of this version"):
+    edited = json.loads(read_attributes(path)[attribute])
+    assert attribute == "parameters" or edited["route"] == "scalar"
+    nh.io.blocks.edit_attributes(path, {attribute: json.dumps(edited | added)})
+    with pytest.raises(ValueError, match=match):
         nh.load_orbit(path)

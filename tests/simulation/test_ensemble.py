@@ -389,7 +389,14 @@ test_bad_arguments_are_refused = refusals(
     ({"restricted_velocity": [[1, 0]], "steps": 0}, r"`ensemble\(steps=...\)` must be"),
     ({"restricted_velocity": [[1, 0]], "backend": "c"}, "must be one of 'auto'"),
     ({"restricted_velocity": [[1, 0]], "reduce": lambda _: 1.0}, "leading member axis"),
+    ({"restricted_velocity": np.eye(2), "reduce": lambda _: [[1.0], [1.0, 2.0]]}, "return arrays. Got setting an arr"),
     ask=lambda arguments: nh.ensemble(nh.discretize(SLEIGH, 0.1), **{"steps": 5, **arguments}),
+)
+test_rows_and_columns_that_are_not_there_are_refused = refusals(
+    (lambda batch: batch.constraint_residual, "be read from systems in coordinates"),
+    (lambda batch: batch.orbit(0).chosen(np.array([6])), "an array of integers, of 6 rows"),
+    (lambda batch: batch.orbit(0).chosen(np.array([True])), "a mask or an array of integers, of 6 rows"),
+    ask=lambda question: question(nh.ensemble(nh.discretize(SLEIGH, 0.1), momentum=[[1, 0]], steps=5, save_every=1)),
 )
 
 

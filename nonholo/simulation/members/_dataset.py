@@ -29,8 +29,7 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
     for name, values in ensemble.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    coordinates = none.to_dataset().coords.items() if none.coordinates else ()
-    labels: dict[str, Any] = {str(x): rows for x, rows in coordinates if x not in ("step", "time")}
+    labels: dict[str, Any] = {"coordinate": np.array(none.coordinates, dtype=object)} if none.coordinates else {}
     if ensemble.save_every is not None:
         labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
     common = io.provenance.attributes(none)
@@ -54,8 +53,10 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
 
 def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
     """Return all that an orbit tells."""
-    columns = ((str(name), x) for name, x in none.to_dataset().data_vars.items() if name in none.rows())
-    variables: dict[str, Any] = {name: (("member", *x.dims), getattr(ensemble, name), x.attrs) for name, x in columns}
-    if not none.coordinates:
-        variables |= io.datasets.posed(none.space, ensemble.configuration, "member")
-    return variables
+    variables: dict[str, Any] = {
+        name: ((*_EACH, *axes), getattr(ensemble, name), labels)
+        for name, (axes, _, labels) in none.labeled_rows().items()
+    }
+    if none.coordinates:
+        return variables
+    return io.datasets.with_own_axes(variables | io.datasets.posed(none.space, ensemble.configuration, "member"))

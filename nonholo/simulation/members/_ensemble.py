@@ -16,10 +16,11 @@ from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances
 from nonholo.base.progress import progress_bar
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
+from nonholo.orbit import First
 from nonholo.simulation._crossings import refuse_resets, watch_for
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
-from nonholo.simulation.members._members import Firsts, Members, are_others, check_systems, firsts, in_rows
+from nonholo.simulation.members._members import Members, are_others, check_systems, firsts, in_rows
 from nonholo.simulation.members._result import Ensemble, joined_blocks
 from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, Start, System
 
@@ -191,7 +192,7 @@ def _refuse_too_large(plan: Plan, widths: tuple[int, ...], members: int) -> None
     return within_memory("ensemble(times=...)", 16.0 * sum(widths) * members * plan.states, remedy)
 
 
-def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
+def _check_momenta(members: Members, starts: First, plan: Plan) -> None:
     """Refuse full momenta of flows that no admissible velocity has."""
     momenta = starts.demand
     if plan.times is None or momenta is None:
@@ -205,14 +206,14 @@ def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
         raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
 
 
-def _run_all(members: Members, starts: Firsts, plan: Plan, width: int, reduce: Any, report: Report) -> Any:
+def _run_all(members: Members, starts: First, plan: Plan, width: int, reduce: Any, report: Report) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
     has_search = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
     if reduce is None and not has_search:
         return run_members(members, starts, plan, report=report)
     size = max(1, _BLOCK // (width * (1 + plan.steps if has_search else plan.states)))
     parts = [slice(begin, begin + size) for begin in range(0, len(members), size)]
-    blocks = (run_members(members.part(part), starts.part(part), plan, report=report) for part in parts)
+    blocks = (run_members(members.part(part), starts.of(part), plan, report=report) for part in parts)
     if reduce is None:
         return joined_blocks(members, list(blocks))
     return join_blocks(len(members), ((len(block), reduce(block)) for block in blocks))
@@ -250,7 +251,10 @@ def _check_same(whole: dict[str, np.ndarray], rows: dict[str, np.ndarray]) -> No
 
 def _check_rows(size: int, result: object) -> np.ndarray:
     """Refuse what does not have one row for each member of the block."""
-    rows = np.asarray(result)
+    try:
+        rows = np.asarray(result)
+    except ValueError as failure:
+        raise error(_WHERE, "return arrays", str(failure).rstrip("."), "Pad them with NaN.") from failure
     if rows.ndim == 0 or len(rows) != size:
         got = f"shape {rows.shape} for {size} members"
         raise error(_WHERE, "return arrays with a leading member axis", got, "Keep that axis.")

@@ -24,7 +24,7 @@ from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
-from nonholo.simulation.members._members import Firsts, Members, ScalarMembers, are_others, inertias_of, refusal
+from nonholo.simulation.members._members import Members, ScalarMembers, are_others, inertias_of, refusal
 from nonholo.simulation.members._result import Ensemble, log_of, stack_rows, watched_block
 from nonholo.systems import in_coordinates
 
@@ -95,7 +95,7 @@ class Plan(NamedTuple):
         return 1 if self.every is None else 1 + self.steps // self.every
 
 
-def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = lambda _: None) -> Ensemble:
+def run_members(members: Members, starts: First, plan: Plan, report: Report = lambda _: None) -> Ensemble:
     """Run a block of members.
 
     Args:
@@ -125,14 +125,14 @@ def are_side_by_side(members: Members, plan: Plan) -> bool:
     return plan.branch == PRINCIPAL.name and members.lanes is not None
 
 
-def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+def run_in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members of a closed form side by side; events are sought in all of their steps."""
     if plan.events is None:
         return _in_lanes(members, starts, plan, threads, report)
     return watched_block(plan.events, _in_lanes(members, starts, plan._replace(every=1), threads, report), plan.every)
 
 
-def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members of a closed form, 32 at a time, or by JAX."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, with_poses=plan.with_poses)
@@ -223,7 +223,7 @@ def _advance_by_jax(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.Mem
             array[again] = values
 
 
-def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members alone, each as it runs by `simulate` or `flow`."""
     count, orbits, good = len(members), {}, np.zeros(len(members), dtype=np.int64)
 
@@ -242,7 +242,7 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
-def _alone(members: Members, starts: Firsts, plan: Plan, member: int) -> tuple[Any, int]:
+def _alone(members: Members, starts: First, plan: Plan, member: int) -> tuple[Any, int]:
     run = _run_alone if plan.times is None else _flow_alone
     try:
         return run(members.of(member), starts.of(member), plan)
@@ -276,13 +276,13 @@ def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     return orbit, len(orbit) - 1
 
 
-def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
+def run_by_series(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Solve for the flows of members side by side."""
     count, pieces, time = len(members), {}, cast(np.ndarray, plan.times)
 
     def work(part: slice, stop: np.ndarray) -> None:
         options = time - time[0], plan.rtol, stop
-        inertias, places = inertias_of(members.part(part)), starts.part(part).places
+        inertias, places = inertias_of(members.part(part)), starts.of(part).places
         pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
@@ -308,7 +308,7 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
 
 
-def _motion_bound(members: Members, starts: Firsts, time: np.ndarray) -> float:
+def _motion_bound(members: Members, starts: First, time: np.ndarray) -> float:
     """Return by how much a body at most moves, in its algebra, and more where its inertia is uneven."""
     inertia, S = inertias_of(members), members.discrete.system.canonical.constraint_subspace
     velocity = np.linalg.solve(S @ inertia @ S.T, starts.numbers[0][..., None])[..., 0] @ S

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -264,42 +264,18 @@ def check_systems(members: Members) -> None:
         at = int(np.argmax(~(step > 0)))
         remedy = f"Pass positive time steps. This is member {at}."
         raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
-    for member in np.flatnonzero(_doubtful(members)):
+    joint = members.joint_system
+    is_clear = not members.of_system or (joint is not None and joint.is_clear)  # that all of them, or each, can be made
+    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))):
         try:
             members.of(int(member))
         except ValueError as failure:
             raise refusal(int(member), failure) from None
 
 
-def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
-    """Return which members have to be built to know that they can be."""
-    is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
-    return np.broadcast_to(~np.asarray(is_clear), len(members))
-
-
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
 _TOLERANCE = 1e-9  # relative, for velocities and momenta that a user computed in floating point
 _ONE = "Pass one row for each member, or one for all; `simulate` runs a single one."
-
-
-class Firsts(NamedTuple):
-    """The checked starts of members: as `First`, with an axis of members in front of all arrays."""
-
-    numbers: tuple[Float[np.ndarray, "M ..."], ...]
-    demand: Float[np.ndarray, "M ..."] | None
-
-    def of(self, member: int) -> First:
-        """Return the start of one member."""
-        return First(tuple(x[member] for x in self.numbers), None if self.demand is None else self.demand[member])
-
-    @property
-    def places(self) -> tuple[Float[np.ndarray, "M k"], Float[np.ndarray, "M ..."]]:
-        """Momenta, and poses or places."""
-        return self.numbers[0], self.numbers[1]
-
-    def part(self, which: slice) -> "Firsts":
-        """Return the starts of some members."""
-        return Firsts(tuple(x[which] for x in self.numbers), None if self.demand is None else self.demand[which])
 
 
 def in_rows(motion: Any, start: Start, parameters: Any) -> tuple[Start, int, dict[str, Any]]:
@@ -344,7 +320,7 @@ def _common(lengths: dict[str, int]) -> int:
     return next(iter(lengths.values()))
 
 
-def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -> Firsts:
+def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -> First:
     """Return the checked starts of all members, with poses or without, from one that has rows.
 
     Those that are computed side by side start at once.
@@ -358,14 +334,14 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
         if bad.any():
             _of_one(members, start, begin + int(np.argmax(bad)), with_poses=with_poses)
     full = start.name == "momentum" and start.value.shape[1] != 2
-    return Firsts((momenta, _poses(members, start)), start.value if full else None)
+    return First((momenta, _poses(members, start)), start.value if full else None)
 
 
-def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> Firsts:
+def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> First:
     each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
     demand = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
-    return Firsts(numbers, demand)
+    return First(numbers, demand)
 
 
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:

@@ -253,6 +253,9 @@ class Ensemble:
     @property
     def constraint_residual(self) -> Float[np.ndarray, "M K"]:
         """Largest residuals of the constraint in coordinates."""
+        if not self.members.in_coordinates:
+            got, remedy = type(self.members.discrete.system).__name__, "Take nh.invariants(batch.orbit(member))."
+            raise error("Ensemble.constraint_residual", "be read from systems in coordinates", got, remedy)
         return self._decode("constraint_residual")
 
     @property
