@@ -11,6 +11,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -164,14 +165,17 @@ def _flat(points: Float[np.ndarray, "L d"]) -> dict[str, Any]:
 
 def new_page(where: str, size: tuple[float, float], path: str | Path | None, *, overwrite: bool) -> Figure:
     """Return a figure for a head and panels; a path where it cannot be saved is refused in the name of `where`."""
-    figure = theme.new_figure(size)
     if path is not None:
-        where = f"{where}(path=...)"
-        if checked_path(where, path).suffix[1:].lower() not in figure.canvas.get_supported_filetypes():
-            remedy = "Use a path that ends in .png, .svg or .pdf."
-            raise error(where, "end in a picture format", f"{str(path)!r}", remedy)
-        check_file(path, overwrite=overwrite, where=where)
-    return figure
+        check_picture(path, overwrite=overwrite, where=f"{where}(path=...)")
+    return theme.new_figure(size)
+
+
+def check_picture(path: str | Path, *, overwrite: bool, where: str) -> None:
+    """Refuse, in the name of `where`, a path at which no picture can be saved."""
+    if checked_path(where, path).suffix[1:].lower() not in FigureCanvasBase.get_supported_filetypes():
+        remedy = "Use a path that ends in .png, .svg or .pdf."
+        raise error(where, "end in a picture format", f"{str(path)!r}", remedy)
+    check_file(path, overwrite=overwrite, where=where)
 
 
 def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path | None) -> Figure:

@@ -119,10 +119,12 @@ def test_a_start_off_the_locus(nonholo: Command) -> None:
         (["--time-step", "nan"], "--time-step nan: run.time_step: must be a finite number"),
         (["--set", "body.mass"], "must be KEY=VALUE"),
         (["--set", 'run.branch="inner"'], "run.branch: must be a rule without regions"),
+        (["-o", "mine.txt/a.zarr"], "The results cannot be kept in 'mine.txt': not a folder."),
     ],
 )
 def test_usage_errors(arguments: list[Any], told: str, nonholo: Command) -> None:
     """Wrong input ends with exit code 2, a sentence with the key path, and nothing made."""
+    Path("mine.txt").touch()
     assert_ends(nonholo("simulate", "sleigh", *arguments), 2, told)
     assert not list(Path("runs").iterdir()) if Path("runs").exists() else True
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, assert_ends
+from commands import Command, assert_ends, words_of
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -58,9 +58,9 @@ def test_a_store_that_is_where_one_stands(place: str, nonholo: Command, monkeypa
 
 
 def test_options_of_pictures(nonholo: Command) -> None:
-    """Kind, title, size, dots per inch and background of the picture are what the options say."""
+    """Kind, as `nh.plot` spells it too, title, size, dots per inch and background are what the options say."""
     nh.save_orbit(_sleigh(steps=20), "a.zarr")
-    options = ("--kind", "blade-track", "--size", "8x4.5", "--dpi", 40, "--dark", "--title", "Mine")
+    options = ("--kind", "blade_track", "--size", "8x4.5", "--dpi", 40, "--dark", "--title", "Mine")
     assert_ends(nonholo("plot", "a.zarr", *options), 0)
     with Image.open("a.png") as picture:
         assert picture.size == (320, 180)
@@ -77,6 +77,7 @@ def test_options_of_pictures(nonholo: Command) -> None:
         (("--size", "0x9"), "--size must be width and height"),
         (("--kind", "branches", "--gif"), "Leave --kind out"),
         (("--x", "momentum.0"), "--x and --y for --kind section too"),
+        (("-o", "a.txt"), "`nonholo plot -o` must end in a picture format. Got 'a.txt'"),
     ],
 )
 def test_refusals(options: tuple[str, ...], words: str, nonholo: Command) -> None:
@@ -89,7 +90,7 @@ def test_what_a_section_needs(nonholo: Command) -> None:
     """A run without events has no section, and its refusal says what has one; so does a quantity that is none."""
     nh.save_orbit(_sleigh(steps=2), "a.zarr")
     ended = nonholo("plot", "a.zarr", "--kind", "section", "--x", "heading", "--y", "time")
-    assert_ends(ended, 1, "must hold crossings of an event")
+    assert words_of(assert_ends(ended, 1)).startswith("`section(crossings=...)` must hold crossings of an event")
     with pytest.raises(ValueError, match=r"needs --x and --y like body_velocity.0. Got 'speed' to run across"):
         figure_of("section", _sleigh(steps=20, events=[nh.cusp]), {}, across="speed", up="time")
 

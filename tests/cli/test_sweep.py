@@ -231,6 +231,7 @@ def test_all_problems_at_once_are_refused() -> None:
         ('"body.a"', '"start.momentum[0]"', "start.momentum: is missing: momentum[0] is varied"),
         ('kind = "grid"', 'kind = "gird"', "design: must have a known kind. Got 'gird'. Did you mean grid?"),
         ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
+        ('"body.a" = [0.3, 0.5]', '"body.b" = 3', "design.values.body.b: must be a list of numbers"),
         ("[0.3, 0.5]", "{from = 0.1, to = 1}", "body.a.count: is missing"),
         ("[0.3, 0.5]", "{uniform = [0, 1]}", "body.a.uniform: is not a known key. Known: from, to, count, spacing."),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),

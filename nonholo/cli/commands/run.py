@@ -56,7 +56,7 @@ def simulate(
     commands.runs.simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
-Source = Annotated[str, Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`.")]
+Source = Annotated[str, Argument(metavar="SCENARIO | STORE", help="A scenario, or a store of `nonholo simulate`.")]
 Page = Annotated[Path | None, Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 
 

@@ -124,9 +124,7 @@ def _report(request: Loaded, ran: Ran, paths: dict[str, str | None], *, json: bo
     if is_part:
         heading["shown"] = f"the last {len(orbit):,} states; the store has all"
     show(numbers, heading)
-    for kind, path in paths.items():
-        if path:
-            typer.echo(f"{kind:<9} {path}")
+    report.show_paths(paths)
 
 
 def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
@@ -194,9 +192,11 @@ def _scenario_text(request: Loaded) -> str:
 def _check_output(store: Path | None, *, overwrite: bool, new: str | None) -> None:
     """Refuse, before any work is done, a place where the results cannot go."""
     folder = RUNS if store is None else store.parent
-    folder.mkdir(parents=True, exist_ok=True)
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise PermissionError(f"The results cannot be kept in '{folder}': not writable. Choose another place with -o.")
+    with contextlib.suppress(FileExistsError, NotADirectoryError):
+        folder.mkdir(parents=True, exist_ok=True)
+    if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
+        reason = "not writable" if folder.is_dir() else "not a folder"
+        raise PermissionError(f"The results cannot be kept in '{folder}': {reason}. Choose another place with -o.")
     check_target(RUNS / "new.zarr" if store is None else store, overwrite=overwrite, new=new)
     for picture in () if store is None or overwrite else (beside(store, "png"), beside(store, "gif")):
         if picture.exists():

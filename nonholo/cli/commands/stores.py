@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
-from typer import Argument, Exit, Option, echo
+from typer import Argument, Option, echo
 
 from nonholo import io
 from nonholo.cli import screen
@@ -134,21 +134,23 @@ def plot(
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
     pictures = screen.pictures
+    is_sweep, kind = _is_sweep(store), kind.replace("_", "-")
+    if is_sweep and (gif or kind != pictures.OVERVIEW):
+        leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
+    if not is_sweep:
+        _check_kind(kind, gif, color, x or y)
     if output is not None:
+        from nonholo.plot.parts import check_picture
+
         with store_errors(USAGE):
-            io.places.check_file(output, overwrite=overwrite, where="nonholo plot -o")
+            check = io.places.check_file if gif else check_picture  # what a film can be, `animate` says
+            check(output, overwrite=overwrite, where="nonholo plot -o")
     path, look = output or pictures.beside(store, "gif" if gif else "png"), _look(title, size, dark)
-    if _is_sweep(store):
-        if gif or kind != pictures.OVERVIEW:
-            leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
+    if is_sweep:
         paths = pictures.draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
-        _check_kind(kind, gif, color, x or y)
-        names = {"across": x, "up": y} if kind == "section" else {}
-        paths = pictures.draw_stored_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
-    if not any(paths):
-        raise Exit(FAILED)
-    echo("\n".join(filter(None, paths)))
+        paths = pictures.draw_stored_run(store, path, look, pictures.FILM if gif else kind, dpi, across=x, up=y)
+    echo("\n".join(paths))
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:

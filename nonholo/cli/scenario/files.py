@@ -103,7 +103,7 @@ def take_module(module: Path | None) -> dict[str, Any]:
     """Run the user's module of `--module`, and no other: it makes kinds of bodies."""
     try:
         return import_own(module)
-    except Exception as failure:
+    except (Exception, SystemExit) as failure:
         kind = "" if isinstance(failure, ValueError) else f"{type(failure).__name__}: "
         raise ScenarioError([Problem(f"--module {module}", "", f"cannot be used. {kind}{failure}")]) from failure
 
@@ -296,7 +296,7 @@ def template(kind: str) -> str:
         _section("run", Run, whole.get("run", {})),
         _section("output", Output, {}),
     ]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(filter(None, parts)) + "\n"
 
 
 def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comments: bool = False) -> str:

@@ -324,7 +324,7 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
 
 
 def _typical(value: Any) -> Any:
-    if isinstance(value, list) or "count" in value:
+    if not isinstance(value, dict) or "count" in value:
         return along(value)[0].tolist()
     distribution = distribution_of(value)
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
