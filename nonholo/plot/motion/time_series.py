@@ -22,7 +22,7 @@ from nonholo.plot.sheets import Blade, blade_of_system
 
 Series = Callable[[Any], np.ndarray]
 _MOST_POINTS = 2000
-_MOST_LINES = 60  # momenta in one panel
+MOST_LINES = 60  # momenta, or velocities, in one panel
 
 
 @theme.in_style
@@ -43,9 +43,9 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     """
     momentum = orbit.restricted_momentum
     k = momentum.shape[1]
-    largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
+    largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:MOST_LINES])
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
-    of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
+    of_many = "" if k <= MOST_LINES else f", the {MOST_LINES} largest of {k}"
     title, names = f"{kind} along the constraint{of_many}", [f"$r_{{{i + 1}}}$" for i in largest]
     draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, largest], names, title, "momentum")
 
