@@ -178,9 +178,9 @@ def overview(
 
     The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
     and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
-    on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
-    energy need poses, and are left out without them; velocities along more than 60 directions are left out too. Color is time in all panels; the strip under a panel against time
-    is the key.
+    on their energy sphere where they are three, against time otherwise; velocities where they are at most 60. With a
+    right-invariant constraint velocity and energy need poses, and are left out without them. Color is time in all
+    panels; the strip under a panel against time is the key.
 
     Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, give its place,
     the other coordinates, velocities, the error of the energy and the residual of the constraint.

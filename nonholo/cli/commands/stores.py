@@ -133,24 +133,30 @@ def plot(
     nonholo plot crossings.zarr --kind section --x body_velocity.0 --y momentum.1
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    pictures = screen.pictures
-    is_sweep, kind = _is_sweep(store), kind.replace("_", "-")
+    pictures, kind = screen.pictures, kind.replace("_", "-")
+    is_sweep = _is_sweep(store)
     if is_sweep and (gif or kind != pictures.OVERVIEW):
         leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
     if not is_sweep:
         _check_kind(kind, gif, color, x or y)
-    if output is not None:
-        from nonholo.plot.parts import check_picture
-
-        with store_errors(USAGE):
-            check = io.places.check_file if gif else check_picture  # what a film can be, `animate` says
-            check(output, overwrite=overwrite, where="nonholo plot -o")
-    path, look = output or pictures.beside(store, "gif" if gif else "png"), _look(title, size, dark)
+    path, look = _picture_path(store, output, gif=gif, overwrite=overwrite), _look(title, size, dark)
     if is_sweep:
         paths = pictures.draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
         paths = pictures.draw_stored_run(store, path, look, pictures.FILM if gif else kind, dpi, across=x, up=y)
     echo("\n".join(paths))
+
+
+def _picture_path(store: Path, output: Path | None, *, gif: bool, overwrite: bool) -> Path:
+    """Return the place of a picture: a new path where a picture can be, by default beside the store."""
+    from nonholo.plot.parts import check_picture
+
+    if output is None:
+        return screen.pictures.beside(store, "gif" if gif else "png")
+    with store_errors(USAGE):
+        check = io.places.check_file if gif else check_picture  # what a film can be, `animate` says
+        check(output, overwrite=overwrite, where="nonholo plot -o")
+    return output
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
