@@ -203,7 +203,7 @@ def overview(
         ['Track of the blade', 'Phase portrait']
     """
     smooth = drawable_in_time("overview(orbit=...)", orbit)
-    flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
+    flow = same_space("overview(flow=...)", flow, orbit)
     figure = new_page("overview", (13.0, 7.6), path, overwrite=overwrite)
     panels = (_of_body if isinstance(smooth, Orbit) else _in_coordinates)(smooth, cast(Any, flow))
     axes = _axes(figure, panels)

@@ -5,6 +5,7 @@ words which orbits are drawn. No mechanics.
 """
 
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
@@ -26,6 +27,7 @@ from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, have_same_rows, refuse_fixed_in_space
 
 MOST_DOTS = 1500  # of most pictures
+_MOST_POINTS = 2000  # of a line
 
 
 def evenly_spread(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> Int[np.ndarray, "L"]:
@@ -46,6 +48,12 @@ def evenly_in_box(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> In
     """Do the same after scaling each coordinate to its own range, as axes do."""
     extent = np.ptp(points, axis=0)
     return evenly_spread(points / np.where(extent > 0, extent, 1.0), most)
+
+
+def draw_line(axes: Axes, x: Float[np.ndarray, "K"], y: Float[np.ndarray, "K"], **look: Any) -> Any:
+    """Draw a line of at most some thousand points, and of one state a dot."""
+    at = evenly_in_box(np.stack([x, y], axis=1), _MOST_POINTS)
+    return axes.plot(x[at], y[at], marker="o" if len(x) == 1 else None, **look)[0]
 
 
 def some_states(orbit: Orbit, most: int) -> Orbit:
@@ -306,18 +314,11 @@ def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     return orbit
 
 
-def same_space(where: str, flow: Any, orbit: AbstractOrbit, remedy: str) -> Any:
+def same_space(where: str, flow: Any, orbit: AbstractOrbit, ready: Callable[..., Any] = drawable_in_time) -> Any:
     """Return the same of an orbit, if there is one, that moves in the same space as the orbit it is drawn beside."""
-    if flow is not None and (flow := drawable_in_time(where, flow)).space != orbit.space:
-        raise error(where, f"move in {orbit.space}", f"{flow.space}", remedy)
+    if flow is not None and (flow := ready(where, flow)).space != orbit.space:
+        raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same system.")
     return flow
-
-
-def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
-    """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
-    if orbit is not None and (orbit := orbit_with_poses(where, orbit)).system.group != other.system.group:
-        raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
-    return orbit
 
 
 def is_free(system: System) -> bool:

@@ -262,14 +262,12 @@ def sweep_and_keep(request: Loaded[Any], output: Path | None, how: dict[str, Any
 def continue_and_report(store: Path, module: Path | None, resume: Callable[..., AbstractOrbit], *, json: bool) -> None:
     """Run, name what was damaged, report what the store holds now; `resume` takes `discrete` that no store holds."""
     reason = None
-    with reporting_warnings(), scenario_errors(), store_errors(USAGE):
+    with _reporting_stops(), reporting_warnings(), scenario_errors(), store_errors(USAGE):
         motion = stored_scenario(read_attributes(store), module, Scenario).discretization() if module else None
         try:
             orbit: Any = resume(discrete=motion, progress=sys.stderr.isatty())
         except OutcomeError as failure:
             orbit, reason = failure.orbit, str(failure)
-        except KeyboardInterrupt as failure:
-            leave(str(failure), FAILED)
     show_provenance(store, read_attributes(store), orbit, json=json)
     if reason:
         leave(f"Stopped early; the good steps are kept. {reason}", FAILED)
