@@ -119,7 +119,7 @@ def test_a_start_off_the_locus(nonholo: Command) -> None:
         (["--time-step", "nan"], "--time-step nan: run.time_step: must be a finite number"),
         (["--set", "body.mass"], "must be KEY=VALUE"),
         (["--set", 'run.branch="inner"'], "run.branch: must be a rule without regions"),
-        (["-o", "mine.txt/a.zarr"], "The results cannot be kept in 'mine.txt': not a folder."),
+        (["-o", "mine.txt/a.zarr"], "The results cannot be kept in 'mine.txt', no writable folder."),
     ],
 )
 def test_usage_errors(arguments: list[Any], told: str, nonholo: Command) -> None:

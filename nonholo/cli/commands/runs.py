@@ -192,11 +192,10 @@ def _scenario_text(request: Loaded) -> str:
 def _check_output(store: Path | None, *, overwrite: bool, new: str | None) -> None:
     """Refuse, before any work is done, a place where the results cannot go."""
     folder = RUNS if store is None else store.parent
-    with contextlib.suppress(FileExistsError, NotADirectoryError):
+    with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
     if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
-        reason = "not writable" if folder.is_dir() else "not a folder"
-        raise PermissionError(f"The results cannot be kept in '{folder}': {reason}. Choose another place with -o.")
+        raise PermissionError(f"The results cannot be kept in '{folder}', no writable folder. Choose another with -o.")
     check_target(RUNS / "new.zarr" if store is None else store, overwrite=overwrite, new=new)
     for picture in () if store is None or overwrite else (beside(store, "png"), beside(store, "gif")):
         if picture.exists():
