@@ -165,5 +165,6 @@ def test_findings_are_listed_and_not_measured(nonholo: Command, monkeypatch: pyt
     monkeypatch.setenv("COLUMNS", "400")
     rows = re.findall(r"^│ (.*?) *│", nonholo("paper", "--list").stdout, re.MULTILINE)
     assert rows == [", ".join(entry.names) for entry in entries()]
+    assert all(len(names := row.split(", ")) == len({*names}) for row in rows)
     assert len(re.findall("^│", nonholo("paper", "--list", "--only", "S14").stdout, re.MULTILINE)) == 1
     assert list(Path().glob("paper")) == []
