@@ -22,7 +22,6 @@ import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize, is_color_like, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -333,7 +332,7 @@ def end_colors(orbit: AbstractOrbit) -> list[tuple[float, float, float, float]]:
 component_colours, end_colours = component_colors, end_colors  # names they had, which still work
 
 
-def color_key(axes: Axes, mappable: Any, name: str, **look: Any) -> Colorbar:
+def color_key(axes: Axes, mappable: Any, name: str, **look: Any) -> Any:
     """Put the key to the colors beside the axes."""
     figure: Any = axes.get_figure(root=False)
     bar = figure.colorbar(mappable, ax=axes, label=name, pad=0.02, **look)

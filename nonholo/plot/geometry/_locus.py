@@ -91,7 +91,7 @@ def momentum_locus(
         (1, 2)
     """
     where = "plot.momentum_locus"
-    locus = _computed(where, locus)
+    locus = _locus_of(where, locus)
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = axes
     if space is None:
@@ -120,7 +120,7 @@ def momentum_locus(
     return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
 
 
-def _computed(where: str, locus: Any) -> MomentumLocus:
+def _locus_of(where: str, locus: Any) -> MomentumLocus:
     """Return a locus, that of a discretization if it is one."""
     if isinstance(locus, Discretization):
         return analysis.momentum_locus(locus)
@@ -228,7 +228,7 @@ def locus_section(
         1
     """
     where = "plot.locus_section"
-    locus = _computed(where, locus)
+    locus = _locus_of(where, locus)
     if not np.any(n := array(f"{where}(normal=...)", normal, (3,), "Pass three components.")):
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")
     n = n / np.linalg.norm(n)
@@ -359,16 +359,16 @@ def invariant_curves(
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
 
 
-def _curves_of(where: str, given: Any, energies: Any) -> tuple[Discretization, list[InvariantCurve]]:
+def _curves_of(where: str, value: Any, energies: Any) -> tuple[Discretization, list[InvariantCurve]]:
     """Return a map and curves of it: those that are passed, else those of the energies."""
-    if not isinstance(given, list | tuple):
-        discrete = planar_map(f"{where}(discrete=...)", given)[0]
+    if not isinstance(value, list | tuple):
+        discrete = planar_map(f"{where}(discrete=...)", value)[0]
         if energies is None:
             energies = cast(Sheet, sheet_of(discrete.system)).energies(float(discrete.time_step))
         wishes = checked_energies(f"{where}(energies=...)", energies)
         return discrete, [invariant_curve(discrete, energy, _POINTS) for energy in wishes]
-    if not given or not all(isinstance(each, InvariantCurve) and each.discrete is given[0].discrete for each in given):
+    if not value or not all(isinstance(each, InvariantCurve) and each.discrete is value[0].discrete for each in value):
         remedy = "Pass a list of what `nh.invariant_curve` returned for one map."
-        raise error(f"{where}(discrete=...)", "be curves of one discretization", shown(given), remedy)
+        raise error(f"{where}(discrete=...)", "be curves of one discretization", shown(value), remedy)
     refuse_given(where, "be left out beside curves, which have theirs", "Pass `discrete`.", energies=(energies, None))
-    return given[0].discrete, list(given)
+    return value[0].discrete, list(value)
