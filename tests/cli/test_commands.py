@@ -51,13 +51,6 @@ def test_table(nonholo: Command) -> None:
         assert words in result.stdout
 
 
-def test_numbers_go_on_after_the_largest(nonholo: Command) -> None:
-    """A gap is not filled, and a picture that is left over is not overwritten."""
-    Path("runs").mkdir()
-    Path("runs/sleigh-007.png").touch()
-    assert nonholo("simulate", "sleigh", "--no-plot", "-q", "--steps", 3).stdout.strip() == "runs/sleigh-008.zarr"
-
-
 @pytest.mark.profile("faults", instead="test_each_sweep_has_a_new_number")
 @pytest.mark.parametrize("rows", [100, 10_000], ids=["several blocks", "one block"])
 def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -189,6 +189,7 @@ def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
         (("simulate", "particle", "--set", "body.mass=-1"), "body.mass: must be positive. Got -1"),
         (("simulate", "particle", "--set", "body.planar_velocity=[1]"), "body.planar_velocity: must have shape (2,)"),
         (("new", "snakebord"), "Did you mean snakeboard or snake?"),
+        (("examples", "snakbord"), "Did you mean snakeboard?"),
     ],
 )
 @pytest.mark.usefixtures("robot")

@@ -120,9 +120,10 @@ def test_the_file_is_the_one_of_the_repository(nonholo: Command) -> None:
 
 
 def test_every_ready_system_and_scenario_is_listed(nonholo: Command) -> None:
-    """The names of `nh.examples` and the built-in scenarios stand in the list."""
+    """The names of `nh.examples` and the built-in scenarios stand in the list; of a scenario it prints the command."""
     listed = set(re.findall(r"^│ (\w+) ", nonholo("examples").stdout, re.MULTILINE))
     assert listed == {*nh.examples.__all__, *_scenarios()} - {"Example"}
+    assert all(f"nonholo simulate {name}\n" in nonholo("examples", name).stdout for name in _scenarios())
 
 
 def _scenarios() -> list[str]:
@@ -146,17 +147,6 @@ def test_its_lines_of_python_run(nonholo: Command, name: str) -> None:
     names: dict[str, Any] = {"nh": nh}
     exec(re.sub(r"^  ", "", lines, flags=re.MULTILINE), names)  # noqa: S102
     assert len(names["orbit"]) == 401 or names["orbit"].outcome != nh.Outcome.successful
-
-
-@pytest.mark.parametrize("name", _scenarios())
-def test_of_a_scenario_it_says_what_runs_it(nonholo: Command, name: str) -> None:
-    """Of a built-in scenario it prints the command."""
-    assert f"nonholo simulate {name}\n" in nonholo("examples", name).stdout
-
-
-def test_another_name_is_refused_with_the_nearest(nonholo: Command) -> None:
-    """A name that is not there ends with code 2."""
-    assert_ends(nonholo("examples", "snakbord"), 2, "Did you mean snakeboard?")
 
 
 def test_findings_are_listed_and_not_measured(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
