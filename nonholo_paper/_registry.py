@@ -24,7 +24,8 @@ class Entry:
     @property
     def names(self) -> tuple[str, ...]:
         """Return the names by which it can be chosen: its label, its rows of the errata, its picture."""
-        return (self.finding.label, *self.finding.errata, *((self.figure.name,) if self.figure else ()))
+        picture = (self.figure.name,) if self.figure else ()
+        return tuple(dict.fromkeys((self.finding.label, *self.finding.errata, *picture)))  # a label may be a row
 
 
 class UnknownLabelError(ValueError):

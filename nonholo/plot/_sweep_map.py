@@ -133,9 +133,7 @@ def scale_of(subject: Subject) -> Normalize:
 
 def color_key(axes: Axes, mappable: ScalarMappable, subject: Subject) -> Colorbar:
     """Put the key to the colors beside the axes."""
-    figure: Any = axes.get_figure(root=False)
-    bar = figure.colorbar(mappable, ax=axes, label=label(subject.values), pad=0.02)
-    bar.outline.set_visible(False)
+    bar = theme.color_key(axes, mappable, label(subject.values))
     bar.solids.set_alpha(1.0)
     if isinstance(mappable.norm, BoundaryNorm):
         labels = [f"{value:g}" for value in np.unique(subject.finite)]

@@ -11,9 +11,8 @@ from nonholo.analysis import Comparison, Convergence, Errors
 from nonholo.base.checks import instance
 from nonholo.base.types import Float
 from nonholo.plot import theme
-from nonholo.plot.parts import evenly_in_box, finish_page, new_page
+from nonholo.plot.parts import draw_line, finish_page, new_page
 
-_MOST_POINTS = 2000
 _TITLES = {"pose": "Pose", "momentum": "Momentum along admissible directions", "energy": "Energy"}
 _LEAST = 1e-17  # of the largest error, or absolute where there is none, on a logarithmic scale
 
@@ -114,9 +113,8 @@ def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Fl
     """Draw errors in units of a power of ten, and a ring about the largest."""
     most = int(np.abs(errors).argmax())
     unit = 10.0 ** np.floor(np.log10(abs(errors[most]) or _LEAST))
-    at = evenly_in_box(np.stack([time, errors], axis=1), _MOST_POINTS)
     color = _color(name)
-    axes.plot(time[at], errors[at] / unit, color=color, label=theme.option("label", None), linewidth=1.6, zorder=3)
+    draw_line(axes, time, errors / unit, color=color, label=theme.option("label", None), linewidth=1.6, zorder=3)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     mantissa, power = f"{abs(errors[most]):.1e}".split("e")
     largest = "0" if errors[most] == 0 else rf"${mantissa}\cdot10^{{{int(power)}}}$"

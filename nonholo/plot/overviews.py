@@ -48,14 +48,13 @@ def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Pa
 def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     """Return the panels of an orbit of a body, the large one first; there is always one."""
     energy = Panel(functools.partial(time_series.energy_error, orbit), is_timed=True)
-    if orbit.system.is_wide and sheet_of(orbit.system) is None:
-        return [_components(orbit, flow), energy]
     path, momentum = _path(orbit, flow), _momentum(orbit, flow)
-    velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
+    has_few = orbit.system.rank <= time_series.MOST_LINES
+    velocity = [Panel(functools.partial(_velocity, orbit, flow), is_timed=True)] if has_few else []
     if not orbit.system.is_spatial:
-        return [*path, *momentum, velocity, energy]
+        return [*path, *momentum, *velocity, energy]
     # the momenta along such a constraint are constant: nothing to enlarge
-    return [_components(orbit, flow)] if orbit.canonical_pose is None else [*path, velocity, *momentum, energy]
+    return [_components(orbit, flow)] if orbit.canonical_pose is None else [*path, *velocity, *momentum, energy]
 
 
 def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
@@ -179,9 +178,9 @@ def overview(
 
     The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
     and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
-    on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
-    energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
-    is the key.
+    on their energy sphere where they are three, against time otherwise; velocities where they are at most 60. With a
+    right-invariant constraint velocity and energy need poses, and are left out without them. Color is time in all
+    panels; the strip under a panel against time is the key.
 
     Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, give its place,
     the other coordinates, velocities, the error of the energy and the residual of the constraint.
@@ -204,7 +203,7 @@ def overview(
         ['Track of the blade', 'Phase portrait']
     """
     smooth = drawable_in_time("overview(orbit=...)", orbit)
-    flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
+    flow = same_space("overview(flow=...)", flow, orbit)
     figure = new_page("overview", (13.0, 7.6), path, overwrite=overwrite)
     panels = (_of_body if isinstance(smooth, Orbit) else _in_coordinates)(smooth, cast(Any, flow))
     axes = _axes(figure, panels)

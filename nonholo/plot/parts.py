@@ -5,12 +5,14 @@ words which orbits are drawn. No mechanics.
 """
 
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -25,6 +27,7 @@ from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, have_same_rows, refuse_fixed_in_space
 
 MOST_DOTS = 1500  # of most pictures
+_MOST_POINTS = 2000  # of a line
 
 
 def evenly_spread(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> Int[np.ndarray, "L"]:
@@ -45,6 +48,12 @@ def evenly_in_box(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> In
     """Do the same after scaling each coordinate to its own range, as axes do."""
     extent = np.ptp(points, axis=0)
     return evenly_spread(points / np.where(extent > 0, extent, 1.0), most)
+
+
+def draw_line(axes: Axes, x: Float[np.ndarray, "K"], y: Float[np.ndarray, "K"], **look: Any) -> Any:
+    """Draw a line of at most some thousand points, and of one state a dot."""
+    at = evenly_in_box(np.stack([x, y], axis=1), _MOST_POINTS)
+    return axes.plot(x[at], y[at], marker="o" if len(x) == 1 else None, **look)[0]
 
 
 def some_states(orbit: Orbit, most: int) -> Orbit:
@@ -164,14 +173,17 @@ def _flat(points: Float[np.ndarray, "L d"]) -> dict[str, Any]:
 
 def new_page(where: str, size: tuple[float, float], path: str | Path | None, *, overwrite: bool) -> Figure:
     """Return a figure for a head and panels; a path where it cannot be saved is refused in the name of `where`."""
-    figure = theme.new_figure(size)
     if path is not None:
-        where = f"{where}(path=...)"
-        if checked_path(where, path).suffix[1:].lower() not in figure.canvas.get_supported_filetypes():
-            remedy = "Use a path that ends in .png, .svg or .pdf."
-            raise error(where, "end in a picture format", f"{str(path)!r}", remedy)
-        check_file(path, overwrite=overwrite, where=where)
-    return figure
+        check_picture(path, overwrite=overwrite, where=f"{where}(path=...)")
+    return theme.new_figure(size)
+
+
+def check_picture(path: str | Path, *, overwrite: bool, where: str) -> None:
+    """Refuse, in the name of `where`, a path at which no picture can be saved."""
+    if checked_path(where, path).suffix[1:].lower() not in FigureCanvasBase.get_supported_filetypes():
+        remedy = "Use a path that ends in .png, .svg or .pdf."
+        raise error(where, "end in a picture format", f"{str(path)!r}", remedy)
+    check_file(path, overwrite=overwrite, where=where)
 
 
 def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path | None) -> Figure:
@@ -302,18 +314,11 @@ def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     return orbit
 
 
-def same_space(where: str, flow: Any, orbit: AbstractOrbit, remedy: str) -> Any:
+def same_space(where: str, flow: Any, orbit: AbstractOrbit, ready: Callable[..., Any] = drawable_in_time) -> Any:
     """Return the same of an orbit, if there is one, that moves in the same space as the orbit it is drawn beside."""
-    if flow is not None and (flow := drawable_in_time(where, flow)).space != orbit.space:
-        raise error(where, f"move in {orbit.space}", f"{flow.space}", remedy)
+    if flow is not None and (flow := ready(where, flow)).space != orbit.space:
+        raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same system.")
     return flow
-
-
-def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
-    """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
-    if orbit is not None and (orbit := orbit_with_poses(where, orbit)).system.group != other.system.group:
-        raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
-    return orbit
 
 
 def is_free(system: System) -> bool:

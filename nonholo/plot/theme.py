@@ -332,6 +332,14 @@ def end_colors(orbit: AbstractOrbit) -> list[tuple[float, float, float, float]]:
 component_colours, end_colours = component_colors, end_colors  # names they had, which still work
 
 
+def color_key(axes: Axes, mappable: Any, name: str, **look: Any) -> Any:
+    """Put the key to the colors beside the axes."""
+    figure: Any = axes.get_figure(root=False)
+    bar = figure.colorbar(mappable, ax=axes, label=name, pad=0.02, **look)
+    bar.outline.set_visible(False)
+    return bar
+
+
 def mark_time(axes: Axes, orbit: AbstractOrbit) -> None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2 or option("color", None):

@@ -1,5 +1,6 @@
 """Every ready example from the command line: run, page, sweep, picture, template; and bodies of a user's own file."""
 
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -102,7 +103,11 @@ def cart(mass: float = 1.0, speed: float = 0.5):
 
 
 def plank(mass: float):
-    """A sleigh of this mass."""
+    """A sleigh of this mass [/kg]."""
+    return nh.ChaplyginSleigh(mass, 1.0, 0.3)
+
+
+def bare(mass: float):
     return nh.ChaplyginSleigh(mass, 1.0, 0.3)
 '''
 SWEEP = """
@@ -127,10 +132,16 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def test_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
+def test_a_body_of_ones_own(robot: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """Functions of a file that is named are kinds of bodies: run, listed, a template, a page, a run."""
     own = ("--module", robot)
-    assert "cart" in output_of(nonholo("systems", *own))
+    monkeypatch.setenv("COLUMNS", "200")
+    listed = output_of(nonholo("systems", *own))
+    assert re.findall(r"^│ (cart|plank|bare) +│ (.*?) +│", listed, re.MULTILINE) == [
+        ("cart", "A cart that moves along x alone."),
+        ("plank", "A sleigh of this mass [/kg]."),
+        ("bare", ""),
+    ]
     Path("cart.toml").write_text(output_of(nonholo("new", "cart", *own)))
     assert "mass = 1.0  # m, of the cart." in Path("cart.toml").read_text()
     told = json_of(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0"))
@@ -172,11 +183,13 @@ def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
         (("simulate", "cart", "--module", "none.py"), "must be the path of a Python file. Got 'none.py'"),
         (("simulate", "cart", "--module", "json.py"), "but there is a module json at"),
         (("simulate", "cart", "--module", "broken.py"), "cannot be used. SyntaxError"),
+        (("simulate", "cart", "--module", "leaving.py"), "cannot be used. SystemExit: 3"),
         (("simulate", "cart", "--module", "cart_of_mine.py", "--set", "body.mas=1"), "Did you mean mass?"),
         (("simulate", "snakebord"), "Did you mean snakeboard or snake? Your own functions are kinds with --module"),
         (("simulate", "particle", "--set", "body.mass=-1"), "body.mass: must be positive. Got -1"),
         (("simulate", "particle", "--set", "body.planar_velocity=[1]"), "body.planar_velocity: must have shape (2,)"),
         (("new", "snakebord"), "Did you mean snakeboard or snake?"),
+        (("examples", "snakbord"), "Did you mean snakeboard?"),
     ],
 )
 @pytest.mark.usefixtures("robot")
@@ -184,4 +197,5 @@ def test_refusals(arguments: tuple[str, ...], told: str, nonholo: Command) -> No
     """A file is never imported unasked; what is wrong with one, or with the numbers of an example, is said."""
     Path("json.py").write_text("")
     Path("broken.py").write_text("def cart(:")
+    Path("leaving.py").write_text("raise SystemExit(3)")
     assert_ends(nonholo(*arguments), 2, told)

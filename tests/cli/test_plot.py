@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, assert_ends
+from commands import Command, assert_ends, words_of
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -58,9 +58,9 @@ def test_a_store_that_is_where_one_stands(place: str, nonholo: Command, monkeypa
 
 
 def test_options_of_pictures(nonholo: Command) -> None:
-    """Kind, title, size, dots per inch and background of the picture are what the options say."""
+    """Kind, as `nh.plot` spells it too, title, size, dots per inch and background are what the options say."""
     nh.save_orbit(_sleigh(steps=20), "a.zarr")
-    options = ("--kind", "blade-track", "--size", "8x4.5", "--dpi", 40, "--dark", "--title", "Mine")
+    options = ("--kind", "blade_track", "--size", "8x4.5", "--dpi", 40, "--dark", "--title", "Mine")
     assert_ends(nonholo("plot", "a.zarr", *options), 0)
     with Image.open("a.png") as picture:
         assert picture.size == (320, 180)
@@ -77,6 +77,7 @@ def test_options_of_pictures(nonholo: Command) -> None:
         (("--size", "0x9"), "--size must be width and height"),
         (("--kind", "branches", "--gif"), "Leave --kind out"),
         (("--x", "momentum.0"), "--x and --y for --kind section too"),
+        (("-o", "a.txt"), "`nonholo plot -o` must end in a picture format. Got 'a.txt'"),
     ],
 )
 def test_refusals(options: tuple[str, ...], words: str, nonholo: Command) -> None:
@@ -89,7 +90,7 @@ def test_what_a_section_needs(nonholo: Command) -> None:
     """A run without events has no section, and its refusal says what has one; so does a quantity that is none."""
     nh.save_orbit(_sleigh(steps=2), "a.zarr")
     ended = nonholo("plot", "a.zarr", "--kind", "section", "--x", "heading", "--y", "time")
-    assert_ends(ended, 1, "must hold crossings of an event")
+    assert words_of(assert_ends(ended, 1)).startswith("`section(crossings=...)` must hold crossings of an event")
     with pytest.raises(ValueError, match=r"needs --x and --y like body_velocity.0. Got 'speed' to run across"):
         figure_of("section", _sleigh(steps=20, events=[nh.cusp]), {}, across="speed", up="time")
 
@@ -119,9 +120,10 @@ def test_the_file_is_the_one_of_the_repository(nonholo: Command) -> None:
 
 
 def test_every_ready_system_and_scenario_is_listed(nonholo: Command) -> None:
-    """The names of `nh.examples` and the built-in scenarios stand in the list."""
+    """The names of `nh.examples` and the built-in scenarios stand in the list; of a scenario it prints the command."""
     listed = set(re.findall(r"^│ (\w+) ", nonholo("examples").stdout, re.MULTILINE))
     assert listed == {*nh.examples.__all__, *_scenarios()} - {"Example"}
+    assert all(f"nonholo simulate {name}\n" in nonholo("examples", name).stdout for name in _scenarios())
 
 
 def _scenarios() -> list[str]:
@@ -147,22 +149,12 @@ def test_its_lines_of_python_run(nonholo: Command, name: str) -> None:
     assert len(names["orbit"]) == 401 or names["orbit"].outcome != nh.Outcome.successful
 
 
-@pytest.mark.parametrize("name", _scenarios())
-def test_of_a_scenario_it_says_what_runs_it(nonholo: Command, name: str) -> None:
-    """Of a built-in scenario it prints the command."""
-    assert f"nonholo simulate {name}\n" in nonholo("examples", name).stdout
-
-
-def test_another_name_is_refused_with_the_nearest(nonholo: Command) -> None:
-    """A name that is not there ends with code 2."""
-    assert_ends(nonholo("examples", "snakbord"), 2, "Did you mean snakeboard?")
-
-
 def test_findings_are_listed_and_not_measured(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """`paper --list` has a row for each finding, of a choice only its own, and leaves the folder empty."""
     monkeypatch.setattr("nonholo_paper.evaluate_all", lambda *_: pytest.fail("measured"))
     monkeypatch.setenv("COLUMNS", "400")
     rows = re.findall(r"^│ (.*?) *│", nonholo("paper", "--list").stdout, re.MULTILINE)
     assert rows == [", ".join(entry.names) for entry in entries()]
+    assert all(len(names := row.split(", ")) == len({*names}) for row in rows)
     assert len(re.findall("^│", nonholo("paper", "--list", "--only", "S14").stdout, re.MULTILINE)) == 1
     assert list(Path().glob("paper")) == []

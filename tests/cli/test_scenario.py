@@ -82,10 +82,11 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 
 def test_settings_name_their_option() -> None:
-    """A wrong value from the command line is reported with the option, the rest with the file."""
+    """A wrong value or path from the command line is reported with the option, the rest with the file."""
     found = _problems(_GOOD.replace("mass = 1", "mass = -1"), "body.a=nan", "start.velocity=1")
     assert found[0] == "--set body.a=nan: body.a: must be a finite number. Got nan"
     assert found[1].startswith("--set start.velocity=1: start.velocity: is not a known key. Did you mean")
+    assert "mass is a value, not a table" in _problems(_GOOD, "body.mass.x=1")[0]
 
 
 @pytest.mark.parametrize("text", ["body.a", "=1", "body..a=1", "body.a=x", "body.a=1\nb=2", "body.a="])
@@ -93,11 +94,6 @@ def test_malformed_settings(text: str) -> None:
     """A setting that is not KEY=VALUE with a TOML value is refused with an example."""
     with pytest.raises(ScenarioError, match=r"must (be KEY=VALUE|have a TOML value)"):
         parse_setting(text)
-
-
-def test_setting_a_key_below_a_value() -> None:
-    """A setting cannot descend into a number."""
-    assert "mass is a value, not a table" in _problems(_GOOD, "body.mass.x=1")[0]
 
 
 def test_setting_replaces_a_table() -> None:

@@ -114,12 +114,12 @@ def test_the_table_and_the_picture(nonholo: Command) -> None:
 
 
 def test_each_sweep_has_a_new_number(nonholo: Command) -> None:
-    """Without -o nothing is overwritten; with -q only the path is printed."""
+    """Without -o nothing is overwritten, nor a picture that is left over, no gap filled; -q prints the path alone."""
     text = _written(RANDOM)
-    assert [nonholo("sweep", text, "-q", "--no-plot").stdout.strip() for _ in range(2)] == [
-        "runs/my-001.zarr",
-        "runs/my-002.zarr",
-    ]
+    Path("runs").mkdir()
+    Path("runs/my-007.png").touch()
+    stores = [nonholo("sweep", text, "-q", "--no-plot").stdout for _ in range(2)]
+    assert stores == ["runs/my-008.zarr\n", "runs/my-009.zarr\n"]
 
 
 def test_sweep_that_was_stopped_is_asked_again(nonholo: Command) -> None:
@@ -231,6 +231,7 @@ def test_all_problems_at_once_are_refused() -> None:
         ('"body.a"', '"start.momentum[0]"', "start.momentum: is missing: momentum[0] is varied"),
         ('kind = "grid"', 'kind = "gird"', "design: must have a known kind. Got 'gird'. Did you mean grid?"),
         ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
+        ('"body.a" = [0.3, 0.5]', '"body.b" = 3', "design.values.body.b: must be a list of numbers"),
         ("[0.3, 0.5]", "{from = 0.1, to = 1}", "body.a.count: is missing"),
         ("[0.3, 0.5]", "{uniform = [0, 1]}", "body.a.uniform: is not a known key. Known: from, to, count, spacing."),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),
@@ -400,28 +401,23 @@ def test_stopping_signals(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("words", "told"),
     [
-        (("--scheduler", "nix"), "must be one of threads, processes, synchronous or an address"),
-        (("--members", "2.5"), "--members 2.5: design.members: must be a valid integer"),
-        (("--members", "0"), "--members 0: design.members: must be greater than 0"),
-        (("--set", "design.kind='random'"), "my.toml: design.members: is missing"),
+        (("sweep", "--scheduler", "nix"), "must be one of threads, processes, synchronous or an address"),
+        (("sweep", "--members", "2.5"), "--members 2.5: design.members: must be a valid integer"),
+        (("sweep", "--members", "0"), "--members 0: design.members: must be greater than 0"),
+        (("sweep", "--set", "design.kind='random'"), "my.toml: design.members: is missing"),
+        (("simulate",), "nonholo sweep my.toml"),
     ],
 )
-def test_options_that_are_refused(options: tuple[str, str], told: str, nonholo: Command) -> None:
-    """A bad option ends with exit code 2 before there is a store."""
-    assert_ends(nonholo("sweep", _written(GRID), *options), 2, told)
+def test_options_that_are_refused(words: tuple[str, ...], told: str, nonholo: Command) -> None:
+    """A bad option, and a command for one motion, end with exit code 2 before there is a store."""
+    assert_ends(nonholo(words[0], _written(GRID), *words[1:]), 2, told)
     assert not list(Path().glob("runs/*"))
 
 
-def test_extend_of_a_sweep_is_refused(nonholo: Command) -> None:
-    """A sweep has no end to go past; the refusal says what to do."""
-    store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
-    assert_ends(nonholo("extend", store, "--steps", 10), 2, "--set run.steps")
-
-
 def test_plot_of_a_sweep(nonholo: Command) -> None:
-    """`plot` draws what the scenario shows, or what is asked for, by key path or by name."""
+    """`plot` draws what the scenario shows, or what is asked for, by key path or name; `extend` has nothing to add."""
     store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
     assert nonholo("plot", store, "-o", "own.png").exit_code == 0
     assert nonholo("plot", store, "-o", "other.svg", "--color", "energy_drift", "--x", "body.a").exit_code == 0
@@ -429,11 +425,7 @@ def test_plot_of_a_sweep(nonholo: Command) -> None:
     assert "energy drift" in Path("other.svg").read_text()
     ended = nonholo("plot", store, "-o", "none.png", "--color", "nothing")
     assert_ends(ended, 1, "must be one of 'energy_drift', 'heading_turn', 'outcome'")
-
-
-def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:
-    """`simulate` sends a scenario with a design to `sweep`."""
-    assert_ends(nonholo("simulate", _written(GRID)), 2, "nonholo sweep my.toml")
+    assert_ends(nonholo("extend", store, "--steps", 10), 2, "--set run.steps")
 
 
 def test_template_runs(nonholo: Command) -> None:

@@ -76,11 +76,12 @@ def test_restricted_momenta_act_on_admissible_velocities_alone(name: str) -> Non
 
 
 def test_a_flow_has_a_picture_of_lines_and_may_be_drawn_over_a_run() -> None:
-    """Alone it is a line in the colors of time; beside a run a second one in each panel."""
+    """Alone it is a line in the colors of time; beside a run a second one in each panel, without corners."""
     alone = nh.plot.overview(flow("particle"))
     assert "continuous flow from time 0 to 4" in alone.texts[1].get_text()
     both = nh.plot.overview(run("particle"), flow=flow("particle"))
     assert "continuous" in [text.get_text() for text in both.axes[0].get_legend().get_texts()]
+    assert len(nh.plot.point_track(run("particle"), flow=flow("particle")).flow.get_xdata()) > 500
     with pytest.raises(ValueError, match=r"overview\(flow=...\)` must move in"):
         nh.plot.overview(
             run("particle"),

@@ -51,9 +51,10 @@ CASES: dict[str, tuple[Any, list[str]]] = {  # a system, which runs, or what mak
         ),
         [f"{_MOMENTUM}, the 60 largest of 999", _ENERGY],
     ),
+    "arrowhead of SO(4)": (nh.SuslovTop.arrowhead([1.0, 2, 3, 4], [0.1, 0.2, 0.3]), [_SPHERE, _VELOCITY, _ENERGY]),
     "arrowhead of SE(4)": (
         nh.MultidimensionalSleigh.arrowhead(1.0, [0.5, 0.2, 0.1, 0.0], [1.0, 2, 3, 4], [0.1, 0.2, 0.3]),
-        [_MOMENTUM, _ENERGY],
+        [_POINT, _MOMENTUM, _VELOCITY, _ENERGY],
     ),
     "sleigh of SE(3)": (
         nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1], body_tensor(3)[:3, :3]),

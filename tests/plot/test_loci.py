@@ -116,6 +116,20 @@ def test_curves_do_not_cross_the_rim() -> None:
                 assert np.linalg.norm(np.diff(run_of_points, axis=0), axis=1).max() < 0.2
 
 
+@pytest.mark.parametrize("discrete", BOTH.values(), ids=BOTH)
+def test_a_map_or_what_was_computed_of_it(discrete: nh.Discretization) -> None:
+    """Pictures of loci and of curves take both, and draw the same points."""
+    for draw in (nh.plot.momentum_locus, nh.plot.locus_section):
+        one, other = (draw(given).axes for given in (discrete, nh.momentum_locus(discrete)))
+        for line, same in zip(one.lines, other.lines, strict=True):
+            assert np.array_equal(line.get_data(), same.get_data())
+    energies = [0.3, 0.4]
+    curves = [nh.invariant_curve(discrete, energy, 300) for energy in energies]
+    one, other = nh.plot.invariant_curves(discrete, energies=energies), nh.plot.invariant_curves(curves)
+    assert np.array_equal(one.stable.get_offsets(), other.stable.get_offsets())
+    assert all(map(np.array_equal, one.levels[1].get_segments(), other.levels[1].get_segments()))
+
+
 def test_branch_counts_draw_the_deltoid() -> None:
     """Boundary and cusps are those of `deltoid` in the plane of pi and p_1; the orbit's dots are its momenta."""
     orbit = run(SLEIGH)
@@ -131,7 +145,12 @@ def test_branch_counts_draw_the_deltoid() -> None:
 # Orbits of another system, no locus, a zero normal and energies below zero.
 test_refuses_what_does_not_belong = refusals(
     (lambda: nh.plot.branch_counts(SLEIGH, run(TOP)), r"`plot.branch_counts\(orbit=...\)` must be an orbit of"),
-    (lambda: nh.plot.momentum_locus(TOP), r"`plot.momentum_locus\(locus=...\)` must be a locus"),
+    (lambda: nh.plot.momentum_locus(TOP.system), r"`plot.momentum_locus\(locus=...\)` must be a locus"),
+    (lambda: nh.plot.invariant_curves([TOP]), r"`plot.invariant_curves\(discrete=...\)` must be curves of one"),
+    (
+        lambda: nh.plot.invariant_curves([nh.invariant_curve(TOP, 1.0)], energies=[1.0]),
+        "must be left out beside curves",
+    ),
     (
         lambda: nh.plot.locus_section(nh.momentum_locus(TOP, 8), normal=(0, 0, 0)),
         r"`plot.locus_section\(normal=...\)` must not be zero",

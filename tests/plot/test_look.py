@@ -153,6 +153,7 @@ def test_dark_palette() -> None:
     figure = Figure(facecolor="#101216")
     collect(figure.add_subplot(facecolor="none"))
     assert len(colors) == 54
+    assert (theme.component_colours, theme.end_colours) == (theme.component_colors, theme.end_colors)  # former names
     assert min(_contrast(color, "#101216") for color in colors) >= 4.5
     assert theme.INK == "#222222"
 

@@ -60,7 +60,7 @@ def _author(about: dict[str, str]) -> str:
     return f"{about['family-names']}, {about['given-names']}" if "family-names" in about else f"{{{about['name']}}}"
 
 
-def examples(name: Annotated[str | None, Argument(metavar="[NAME]", help="One that is listed.")] = None) -> None:
+def examples(name: Annotated[str | None, Argument(metavar="NAME", help="One that is listed.")] = None) -> None:
     """List the ready systems of the literature and the built-in scenarios; of one, show what is known.
 
     All of them are for `nonholo simulate`, `explore` and `new`.
@@ -147,7 +147,7 @@ def systems(module: Module = None) -> None:
     with scenario_errors():
         scenario.files.take_module(module)
     tables = ((kind, scenario.bodies.body_table(kind)) for kind in scenario.bodies.own_kinds())
-    rows = ((kind, body.__doc__ or "", ", ".join([*body.model_fields][1:])) for kind, body in tables)
+    rows = ((kind, scenario.bodies.summary(body.make), ", ".join([*body.model_fields][1:])) for kind, body in tables)
     screen.tables.show_table(("kind", "description", "parameters"), rows, "Bodies")
     screen.tables.show_table(_ABOUT, scenario.files.built_in_titles().items(), "Built-in scenarios")
     echo("And every ready system of `nonholo examples`.")

@@ -13,7 +13,7 @@ from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, 
 
 
 def dataset(
-    name: Annotated[str | None, Argument(metavar="[NAME]", help="One of those that --list shows.")] = None,
+    name: Annotated[str | None, Argument(metavar="NAME", help="One of those that --list shows.")] = None,
     output: Annotated[Path | None, Option("-o", "--output", metavar="FOLDER", help="A new folder.")] = None,
     orbits: Annotated[int, Option(metavar="N", min=1, help="How many orbits.")] = 1000,
     steps: Annotated[int, Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,

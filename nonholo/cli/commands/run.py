@@ -50,13 +50,12 @@ def simulate(
     nonholo simulate my.toml -o study/first.zarr --json
     nonholo simulate robot.toml --module my_robot.py
     """
-    options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
-    options |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
+    options = {"run.steps": steps, "run.time_step": time_step, "output.plot": plot, "output.gif": gif}
     request = commands.runs.request_of(scenario, options, settings, module)
     commands.runs.simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
-Source = Annotated[str, Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`.")]
+Source = Annotated[str, Argument(metavar="SCENARIO | STORE", help="A scenario, or a store of `nonholo simulate`.")]
 Page = Annotated[Path | None, Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 
 
@@ -80,7 +79,7 @@ def explore(
     nonholo explore my.toml -o top.html --no-browser
     nonholo explore runs/sleigh-001.zarr
     """
-    options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
+    options = {"run.steps": steps, "run.time_step": time_step}
     ask = functools.partial(commands.runs.request_of, source, options, settings, module)
     echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
@@ -128,7 +127,7 @@ def sweep(
     nonholo resume large.zarr               resume one that stopped
     """
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
-    options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
+    options = {"design.members": whole, "output.plot": plot}
     request = commands.runs.request_of(scenario, options, settings, module, of_sweep=True)
     commands.runs.sweep_and_keep(request, output, {"scheduler": scheduler, "workers": workers}, json=json, quiet=quiet)
 

@@ -124,9 +124,7 @@ def _report(request: Loaded, ran: Ran, paths: dict[str, str | None], *, json: bo
     if is_part:
         heading["shown"] = f"the last {len(orbit):,} states; the store has all"
     show(numbers, heading)
-    for kind, path in paths.items():
-        if path:
-            typer.echo(f"{kind:<9} {path}")
+    report.show_paths(paths)
 
 
 def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
@@ -194,9 +192,10 @@ def _scenario_text(request: Loaded) -> str:
 def _check_output(store: Path | None, *, overwrite: bool, new: str | None) -> None:
     """Refuse, before any work is done, a place where the results cannot go."""
     folder = RUNS if store is None else store.parent
-    folder.mkdir(parents=True, exist_ok=True)
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise PermissionError(f"The results cannot be kept in '{folder}': not writable. Choose another place with -o.")
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+    if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
+        raise PermissionError(f"The results cannot be kept in '{folder}', no writable folder. Choose another with -o.")
     check_target(RUNS / "new.zarr" if store is None else store, overwrite=overwrite, new=new)
     for picture in () if store is None or overwrite else (beside(store, "png"), beside(store, "gif")):
         if picture.exists():
@@ -262,14 +261,12 @@ def sweep_and_keep(request: Loaded[Any], output: Path | None, how: dict[str, Any
 def continue_and_report(store: Path, module: Path | None, resume: Callable[..., AbstractOrbit], *, json: bool) -> None:
     """Run, name what was damaged, report what the store holds now; `resume` takes `discrete` that no store holds."""
     reason = None
-    with reporting_warnings(), scenario_errors(), store_errors(USAGE):
+    with _reporting_stops(), reporting_warnings(), scenario_errors(), store_errors(USAGE):
         motion = stored_scenario(read_attributes(store), module, Scenario).discretization() if module else None
         try:
             orbit: Any = resume(discrete=motion, progress=sys.stderr.isatty())
         except OutcomeError as failure:
             orbit, reason = failure.orbit, str(failure)
-        except KeyboardInterrupt as failure:
-            leave(str(failure), FAILED)
     show_provenance(store, read_attributes(store), orbit, json=json)
     if reason:
         leave(f"Stopped early; the good steps are kept. {reason}", FAILED)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
-from typer import Argument, Exit, Option, echo
+from typer import Argument, Option, echo
 
 from nonholo import io
 from nonholo.cli import screen
@@ -133,22 +133,30 @@ def plot(
     nonholo plot crossings.zarr --kind section --x body_velocity.0 --y momentum.1
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    pictures = screen.pictures
-    if output is not None:
-        with store_errors(USAGE):
-            io.places.check_file(output, overwrite=overwrite, where="nonholo plot -o")
-    path, look = output or pictures.beside(store, "gif" if gif else "png"), _look(title, size, dark)
-    if _is_sweep(store):
-        if gif or kind != pictures.OVERVIEW:
-            leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
+    pictures, kind = screen.pictures, kind.replace("_", "-")
+    is_sweep = _is_sweep(store)
+    if is_sweep and (gif or kind != pictures.OVERVIEW):
+        leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
+    if not is_sweep:
+        _check_kind(kind, gif, color, x or y)
+    path, look = _picture_path(store, output, gif=gif, overwrite=overwrite), _look(title, size, dark)
+    if is_sweep:
         paths = pictures.draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
-        _check_kind(kind, gif, color, x or y)
-        names = {"across": x, "up": y} if kind == "section" else {}
-        paths = pictures.draw_stored_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
-    if not any(paths):
-        raise Exit(FAILED)
-    echo("\n".join(filter(None, paths)))
+        paths = pictures.draw_stored_run(store, path, look, pictures.FILM if gif else kind, dpi, across=x, up=y)
+    echo("\n".join(paths))
+
+
+def _picture_path(store: Path, output: Path | None, *, gif: bool, overwrite: bool) -> Path:
+    """Return the place of a picture: a new path where a picture can be, by default beside the store."""
+    from nonholo.plot.parts import check_picture
+
+    if output is None:
+        return screen.pictures.beside(store, "gif" if gif else "png")
+    with store_errors(USAGE):
+        check = io.places.check_file if gif else check_picture  # what a film can be, `animate` says
+        check(output, overwrite=overwrite, where="nonholo plot -o")
+    return output
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:

@@ -20,7 +20,7 @@ from pydantic import ValidationError
 from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, nearest_kind, summary
 from nonholo.cli.scenario.motion import Output, Run, Scenario, Start, complete_ready, moving, read_table
-from nonholo.cli.scenario.sections import Problem, ScenarioError, Section, problem, problems_of, split_core, suggestion
+from nonholo.cli.scenario.sections import Origin, Problem, ScenarioError, Section, split_core, suggestion
 from nonholo.groups import components_of
 
 Model = TypeVar("Model", bound=Section)
@@ -38,12 +38,11 @@ class Setting(NamedTuple):
 
 
 class Loaded(NamedTuple, Generic[Model]):
-    """A checked scenario, its short name, where it came from, which key paths the command line set, whose bodies."""
+    """A checked scenario, its short name, where it came from, whose bodies."""
 
     scenario: Model
     name: str
-    source: str
-    options: dict[str, str]
+    origin: Origin
     module: Path | None = None
 
     @contextlib.contextmanager
@@ -56,7 +55,7 @@ class Loaded(NamedTuple, Generic[Model]):
             _, _, name = key.partition(".")
             own = [each for each, model in (("run", Run), ("start", Start)) if name in model.model_fields]
             key = f"{own[0]}.{name}" if own else key
-            raise ScenarioError([problem(key, text, self.source, self.options)]) from None
+            raise self.origin.error((key, text)) from None
 
 
 def parse_toml(text: str) -> Document:
@@ -90,20 +89,20 @@ def _depth(document: Document) -> int:
 def load_scenario(name: str, settings: list[Setting], module: Path | None = None) -> Loaded[Scenario]:
     """Return the scenario of a file, a built-in name or an example with settings, or raise with all its problems."""
     take_module(module)
-    source, document = read_document(name, built_in())
+    origin, document = read_document(name, built_in(), settings)
     if "design" in document:
-        raise ScenarioError([Problem(source, "design", f"is for sweeps: nonholo sweep {name}")])
+        raise ScenarioError([Problem(origin.source, "design", f"is for sweeps: nonholo sweep {name}")])
     for setting in settings:
         assign(document, setting)
-    complete(document, name, source, settings)
-    return validate(document, Scenario, Path(name).stem, source, settings)._replace(module=module)
+    complete(document, name, origin)
+    return validate(document, Scenario, Path(name).stem, origin)._replace(module=module)
 
 
 def take_module(module: Path | None) -> dict[str, Any]:
     """Run the user's module of `--module`, and no other: it makes kinds of bodies."""
     try:
         return import_own(module)
-    except Exception as failure:
+    except (Exception, SystemExit) as failure:
         kind = "" if isinstance(failure, ValueError) else f"{type(failure).__name__}: "
         raise ScenarioError([Problem(f"--module {module}", "", f"cannot be used. {kind}{failure}")]) from failure
 
@@ -130,24 +129,23 @@ def stored_scenario(attributes: dict[str, Any], module: Path | None, model: type
         raise ScenarioError([Problem(f"--module {module}", "", "is for stores that were made from a scenario")])
     document = parse_toml(attributes["scenario"])
     by_table(document)
-    return validate(document, model, "", "the scenario of the store", []).scenario
+    return validate(document, model, "", Origin("the scenario of the store", {})).scenario
 
 
-def complete(document: Document, name: str, source: str, settings: list[Setting], *, start: bool = True) -> None:
+def complete(document: Document, name: str, origin: Origin, *, start: bool = True) -> None:
     """Take from an example what a document leaves out, and read the table of forces that it names.
 
     The table is in the folder of the scenario or, where an option names it, here.
     """
-    options = {setting.key: setting.option for setting in settings}
     try:
         complete_ready(document, start=start)
     except ValidationError as failure:
-        raise ScenarioError(problems_of(failure, source, options, ("body",))) from None
-    folder = Path() if {"forces", "forces.table"} & options.keys() else Path(name).parent
+        raise origin.error_of(failure, ("body",)) from None
+    folder = Path() if {"forces", "forces.table"} & origin.options.keys() else Path(name).parent
     try:
         read_table(document, folder, _directions(document))
     except ValueError as failure:
-        raise ScenarioError([problem("forces.table", str(failure), source, options)]) from None
+        raise origin.error(("forces.table", str(failure))) from None
 
 
 def _directions(document: Document) -> tuple[str, ...] | None:
@@ -159,27 +157,30 @@ def _directions(document: Document) -> tuple[str, ...] | None:
         return None
 
 
-def read_document(name: str, own: dict[str, str]) -> tuple[str, Document]:
-    """Return how the scenario of a file or a built-in name is called in messages, and what it says."""
+def read_document(name: str, own: dict[str, str], settings: list[Setting]) -> tuple[Origin, Document]:
+    """Return where the scenario of a file or a built-in name under settings comes from, and what the file says."""
     source, text = _text_of(name, own)
     try:
-        return source, parse_toml(text)
+        return Origin(source, {setting.key: setting.option for setting in settings}), parse_toml(text)
     except ValueError as failure:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
 
 
-def validate(document: Document, model: type[Model], name: str, source: str, settings: list[Setting]) -> Loaded[Model]:
+def validate(document: Document, model: type[Model], name: str, origin: Origin) -> Loaded[Model]:
     """Return a scenario of that model, or raise with all its problems."""
-    options = {setting.key: setting.option for setting in settings}
     try:
-        return Loaded(model.model_validate(document), name, source, options)
+        return Loaded(model.model_validate(document), name, origin)
     except ValidationError as failure:
-        raise ScenarioError(problems_of(failure, source, options)) from None
+        raise origin.error_of(failure) from None
 
 
-def given_settings(options: dict[str, tuple[str, Any]], texts: list[str]) -> list[Setting]:
-    """Return the settings of a command line: its options by key path, those that are given, then those of `--set`."""
-    own = [Setting(f"{option} {value}", key, value) for key, (option, value) in options.items() if value is not None]
+def given_settings(options: dict[str, Any], texts: list[str]) -> list[Setting]:
+    """Return the settings of a command line: its options by key path, those that are given, then those of `--set`.
+
+    An option is called as the last part of its key path.
+    """
+    names = {key: key.rpartition(".")[2].replace("_", "-") for key in options}
+    own = [Setting(f"--{names[key]} {value}", key, value) for key, value in options.items() if value is not None]
     return own + [parse_setting(text) for text in texts]
 
 
@@ -296,7 +297,7 @@ def template(kind: str) -> str:
         _section("run", Run, whole.get("run", {})),
         _section("output", Output, {}),
     ]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(filter(None, parts)) + "\n"
 
 
 def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comments: bool = False) -> str:

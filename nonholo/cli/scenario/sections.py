@@ -156,21 +156,29 @@ class ScenarioError(Exception):
         self.problems = problems
 
 
-def problems_of(failure: ValidationError, source: str, options: dict[str, str], table: Key = ()) -> list[Problem]:
-    """Return the problems of a validation, all within a table; `options`: key paths of the command line."""
-    entries = [_problem(dict(entry), table) for entry in failure.errors(include_url=False)]
-    return [problem(key, text, source, options) for key, text in entries]
+class Origin(NamedTuple):
+    """Where a document comes from: its name in messages, and the options that gave some of its key paths."""
+
+    source: str
+    options: dict[str, str]
+
+    def error(self, *flaws: tuple[str, str]) -> ScenarioError:
+        """Return the error of what is wrong: key paths and texts."""
+        return ScenarioError([Problem(self._owner(key), key, text) for key, text in flaws])
+
+    def error_of(self, failure: ValidationError, table: Key = ()) -> ScenarioError:
+        """Return the error of a validation, all within a table."""
+        return self.error(*(_flaw(dict(entry), table) for entry in failure.errors(include_url=False)))
+
+    def _owner(self, key: str) -> str:
+        """Return the option that gave the value at a key path, or the source."""
+        for path, option in self.options.items():
+            if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
+                return option
+        return self.source
 
 
-def problem(key: str, text: str, source: str, options: dict[str, str]) -> Problem:
-    """Return what is wrong at a key path, with the option that gave it, or the file."""
-    for path, option in options.items():
-        if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
-            return Problem(option, key, text)
-    return Problem(source, key, text)
-
-
-def _problem(entry: dict[str, Any], table: Key) -> tuple[str, str]:
+def _flaw(entry: dict[str, Any], table: Key) -> tuple[str, str]:
     key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in (*table, *entry["loc"])).lstrip(".")
     if entry["type"] == "value_error":
         return split_core(key, str(entry["ctx"]["error"]))

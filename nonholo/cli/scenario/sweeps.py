@@ -262,7 +262,7 @@ def load_sweep_scenario(
 ) -> files.Loaded[SweepScenario]:
     """Return the scenario of a sweep with settings applied, or raise with all its problems."""
     files.take_module(module)
-    source, document = files.read_document(name, files.built_in("sweeps"))
+    origin, document = files.read_document(name, files.built_in("sweeps"), settings)
     files.by_table(document)
     for setting in settings:
         files.assign(document, setting)
@@ -270,15 +270,14 @@ def load_sweep_scenario(
     body = files.table_in(document, "body").get("kind")
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
-    files.complete(document, name, source, settings, start=False)
-    request = files.validate(document, SweepScenario, Path(name).stem, source, settings)
-    if flaws := [sections.problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
-        raise sections.ScenarioError(flaws)
+    files.complete(document, name, origin, start=False)
+    request = files.validate(document, SweepScenario, Path(name).stem, origin)
+    if flaws := _refusals(request.scenario):
+        raise origin.error(*flaws)
     try:
         design = request.scenario.design.with_members()
     except ValueError as failure:
-        flaw = sections.problem("design.members", str(failure), source, request.options)
-        raise sections.ScenarioError([flaw]) from None
+        raise origin.error(("design.members", str(failure))) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
 
 
@@ -324,7 +323,7 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
 
 
 def _typical(value: Any) -> Any:
-    if isinstance(value, list) or "count" in value:
+    if not isinstance(value, dict) or "count" in value:
         return along(value)[0].tolist()
     distribution = distribution_of(value)
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()

@@ -6,7 +6,6 @@ Pictures of a run are the functions of `nonholo.plot` that an orbit has every ar
 import contextlib
 import functools
 import inspect
-import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
     from nonholo.orbit import Orbit
 
-OVERVIEW, ALL = "overview", "all"
+OVERVIEW, ALL, FILM = "overview", "all", "film"
 _MOST_TIMES = 20_000  # of the flow that is drawn along
 _GENERATIONS = 4  # of a tree of branches
 _GIVEN: dict[str, Callable[[Any], Any]] = {
@@ -60,11 +59,12 @@ def _necessary(make: Callable[..., Any]) -> set[str]:
 
 
 def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | None) -> Any:
-    """Return the figure of one kind, of named quantities: with the orbit on it, and the flow beside it."""
+    """Return the figure of one kind, of named quantities if it has any: with the orbit, and the flow beside it."""
     make = kinds()[kind]
-    parameters = {*inspect.signature(make).parameters} | ({"displacement"} if kind == "branches" else set())
-    own = {name: give(orbit) for name, give in _GIVEN.items() if name in parameters}
-    picture = make(**own, **{side: _quantity(side, name) for side, name in names.items()}, **look)
+    parameters = inspect.signature(make).parameters
+    own = {name: _GIVEN[name](orbit) for name in parameters if name in _GIVEN}
+    own |= {side: _quantity(side, names.get(side)) for side in _ASKED if side in parameters}
+    picture = make(**own, **look)
     return picture if kind == OVERVIEW else (picture.axes if hasattr(picture, "axes") else picture.plane).figure
 
 
@@ -91,56 +91,43 @@ def beside(store: Path, suffix: str) -> Path:
 @contextlib.contextmanager
 def _at_no_cost() -> Iterator[None]:
     """Warn of a picture that fails, which never costs the result."""
-    os.environ.setdefault("MPLBACKEND", "agg")
     try:
         yield
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")
 
 
-def _save(picture: Path, make: Callable[[], Any], dpi: float, *, progress: bool, what: str = "drawing") -> str:
+def _save(picture: Path, make: Callable[[], Any], dpi: float = 150, *, progress: bool, what: str = "drawing") -> str:
     """Save the figure that is made; the file appears when it is complete."""
     with complete_file(picture) as part, progress_bar(what, progress):
         make().savefig(part, dpi=dpi)
     return str(picture)
 
 
-def draw(
-    orbit: Any,
-    picture: Path | None,
-    animation: Path | None,
-    *,
-    progress: bool,
-    look: dict[str, Any] | None = None,
-    kind: str = OVERVIEW,
-    dpi: float = 150,
-    **names: str | None,
-) -> dict[str, str | None]:
-    """Draw the given kinds, with progress if wanted; return the paths of the pictures, None for the rest."""
-    look = look or {}
+def _film(orbit: Any, path: Path, *, progress: bool, **look: Any) -> str:
+    with progress_bar("frames", progress) as report:
+        return str(nonholo.plot.animate(orbit, path, progress=report, overwrite=True, **look))
+
+
+def draw(orbit: Any, picture: Path | None, animation: Path | None, *, progress: bool) -> dict[str, str | None]:
+    """Draw the overview and the animation, with progress if wanted; return their paths, None for what is not drawn."""
     paths: dict[str, str | None] = {"picture": None, "animation": None}
     with _at_no_cost():
         if picture is not None:
-            make = functools.partial(figure_of, kind, orbit, look, **names)
-            paths["picture"] = _save(picture, make, dpi, progress=progress)
+            paths["picture"] = _save(picture, lambda: figure_of(OVERVIEW, orbit, {}), progress=progress)
         if animation is not None:
-            with progress_bar("frames", progress) as report:
-                nonholo.plot.animate(orbit, animation, progress=report, overwrite=True, **look)
-            paths["animation"] = str(animation)
+            paths["animation"] = _film(orbit, animation, progress=progress)
     return paths
 
 
-def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any], dpi: float) -> list[str | None]:
+def _draw_all(orbit: Any, picture: Path, look: dict[str, Any], dpi: float, *, progress: bool) -> list[str]:
     """Draw every kind that this orbit has, each in a separate file; return their paths, and warn of the others."""
-    os.environ.setdefault("MPLBACKEND", "agg")
     paths, others = [], []
-    for kind, make in kinds().items():
+    for kind in kinds():
         path, figure = picture.with_stem(f"{picture.stem}-{kind}"), functools.partial(figure_of, kind, orbit, look)
         try:
-            if _necessary(make) & {*_ASKED}:
-                raise ValueError(kind)
             paths.append(_save(path, figure, dpi, progress=progress, what=f"drawing {kind}"))
-        except (AttributeError, TypeError, ValueError):
+        except ValueError:
             others.append(kind)
     if others:
         warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} prints the reason.")
@@ -167,34 +154,41 @@ def _flow(orbit: Any) -> Any:
         return None
 
 
-def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str | None:
-    """Draw a quantity over the design; return the path of the picture, None if there is none."""
-    own: Any = [None if path is None else component_name(library_name(path)) for path in names]
+def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None) -> str | None:
+    """Draw a quantity of a sweep beside its store; return the path of the picture, None if there is none."""
     with _at_no_cost():
-        figure: Any = nonholo.plot.sweep_map(sweep, *own, **look).axes.figure
-        return _save(picture, lambda: figure, dpi, progress=sys.stderr.isatty())
+        return _map(sweep, picture, *names)
     return None
 
 
-def draw_stored_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any) -> list[str | None]:
-    """Draw a picture or the animation of a run, and return the paths of what was drawn."""
+def _map(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str:
+    """Draw a quantity over the design: the given quantities for color, x and y."""
+    own: Any = [None if path is None else component_name(library_name(path)) for path in names]
+    figure: Any = nonholo.plot.sweep_map(sweep, *own, **look).axes.figure
+    return _save(picture, lambda: figure, dpi, progress=sys.stderr.isatty())
+
+
+def draw_stored_run(store: Path, path: Path, look: dict[str, Any], kind: str, dpi: float, **names: Any) -> list[str]:
+    """Draw a picture of a run, all of them or its animation, and return the paths of what was drawn."""
     with store_errors(USAGE):
         read_attributes(store)
     progress = sys.stderr.isatty()
     with store_errors(FAILED), progress_bar("reading", progress):
         orbit = nonholo.load_orbit(store)
-    if options["kind"] == ALL:
-        return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
-    paths = (None, path) if gif else (path, None)
-    return [*draw(orbit, *paths, progress=progress, look=look, **options).values()]
+    if kind == ALL:
+        return _draw_all(orbit, path, look, dpi, progress=progress)
+    with store_errors(FAILED):
+        if kind == FILM:
+            return [_film(orbit, path, progress=progress, **look)]
+        return [_save(path, lambda: figure_of(kind, orbit, look, **names), dpi, progress=progress)]
 
 
-def draw_stored_sweep(store: Path, picture: Path, *names: str | None, **options: Any) -> list[str | None]:
+def draw_stored_sweep(store: Path, picture: Path, *names: str | None, **options: Any) -> list[str]:
     """Draw the sweep of a store: the given quantities for color, x and y, or those of its scenario."""
     with store_errors(FAILED):
         result = nonholo.load_sweep(store)
-    if not any(names):
-        with contextlib.suppress(ValueError):  # a store may keep a text that is no scenario
-            output = table_in(parse_toml(read_attributes(store, SWEEP_FORMAT).get("scenario", "")), "output")
-            names = tuple(output.get(name) for name in ("color", "x", "y"))
-    return [draw_sweep(result, picture, *names, **options)]
+        if not any(names):
+            with contextlib.suppress(ValueError):  # a store may keep a text that is no scenario
+                output = table_in(parse_toml(read_attributes(store, SWEEP_FORMAT).get("scenario", "")), "output")
+                names = tuple(output.get(name) for name in ("color", "x", "y"))
+        return [_map(result, picture, *names, **options)]

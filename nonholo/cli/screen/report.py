@@ -15,14 +15,13 @@ import numpy as np
 import typer
 import xarray
 from rich import box
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from nonholo.analysis import invariants
 from nonholo.base.limits import size_text
 from nonholo.base.progress import progress_bar
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+from nonholo.cli.screen.tables import plain_console, table
 from nonholo.ensembles import load_sweep, standing_of
 from nonholo.ensembles.stores import AXIS, OUTCOME, open_store
 from nonholo.groups import SO
@@ -56,8 +55,8 @@ def figures(orbit: AbstractOrbit) -> dict[str, Any]:
 
 def show(figures: dict[str, Any], heading: dict[str, str]) -> None:
     """Print what was run, the table of invariants and the body."""
-    console = Console(highlight=False)
-    console.print(heading.pop("title"), style="bold", markup=False)
+    console = plain_console()
+    console.print(heading.pop("title"), style="bold")
     console.print(_table(("", ""), heading.items()))
     if figures:
         body = [(_label(name), _shown(value)) for name, value in figures["body"].items()]
@@ -65,12 +64,16 @@ def show(figures: dict[str, Any], heading: dict[str, str]) -> None:
 
 
 def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, show_header=any(columns))
-    for number, column in enumerate(columns):
-        table.add_column(column, min_width=24 if number == 0 else None, overflow="fold")
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    return table
+    first, *others = (Column(name, overflow="fold") for name in columns)
+    first.min_width = 24
+    return table((first, *others), rows, box=box.SIMPLE_HEAD, show_header=any(columns))
+
+
+def show_paths(paths: dict[str, Any]) -> None:
+    """Print where things are."""
+    for kind, path in paths.items():
+        if isinstance(path, str):
+            typer.echo(f"{kind:<9} {path}")
 
 
 def show_json(document: dict[str, Any]) -> None:
@@ -247,9 +250,7 @@ def show_sweep(store: Path, figures: Facts, heading: dict[str, str], more: Facts
     show({}, heading | _sweep_rows(store, figures))
     for member, message in figures["messages"]:
         typer.echo(f"member {member} raised {message}")
-    for kind, path in {"store": str(store), **more}.items():
-        if isinstance(path, str):
-            typer.echo(f"{kind:<9} {path}")
+    show_paths({"store": str(store), **more})
 
 
 def leave_if_all_raised(figures: Facts) -> None:

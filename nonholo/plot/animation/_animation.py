@@ -93,7 +93,7 @@ def animate(
     """
     orbit = drawable_in_time("animate(orbit=...)", orbit)
     motion, scene = _scene_of("animate(orbit=...)", orbit)
-    if (beside := same_space("animate(flow=...)", flow, orbit, "Pass a motion of the same body.")) is not None:
+    if (beside := same_space("animate(flow=...)", flow, orbit)) is not None:
         _scene_of("animate(flow=...)", beside)
     target = film_path("animate(path=...)", path, overwrite=overwrite)
     total = min(count("animate(frames=...)", frames, "Pass how many frames there should be."), len(orbit))
@@ -111,15 +111,15 @@ def animate(
 
 def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
     """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
+    track = track_of(orbit) or momentum_track(orbit)
     scenes: dict[Any, tuple[Any, Any]] = {
         SO(3): (_scenes.motion_on_sphere, _scenes.draw_on_sphere),
         SE(2): (_scenes.motion_in_plane, _scenes.draw_body_in_plane),
-        SE(3): (_scenes.motion_in_space, _scenes.draw_body_in_space),
+        SE(3): (_scenes.motion_in_space, functools.partial(_scenes.draw_in_space, track)),
     }
     if isinstance(orbit, Orbit) and orbit.system.group in scenes:
         return scenes[orbit_with_poses(where, orbit).system.group]
-    track = track_of(orbit) or momentum_track(orbit)
-    draw = _scenes.draw_path_in_plane if len(track.names) == 2 else _scenes.draw_path_in_space
+    draw = _scenes.draw_path_in_plane if len(track.names) == 2 else _scenes.draw_in_space
     return lambda _: 0.0, functools.partial(draw, track)
 
 

@@ -49,6 +49,10 @@ class Part(NamedTuple):
     past: Int[np.ndarray, "F"]
     is_flow: bool = False
 
+    def colors(self, orbit: AbstractOrbit, time: Float[np.ndarray, "L"]) -> Float[np.ndarray, "L 4"]:
+        """Return the colors at these times: of time as in an orbit, or the one of a flow."""
+        return np.tile(to_rgba(theme.CONTINUOUS), (len(time), 1)) if self.is_flow else theme.time_colors(orbit, time)
+
 
 def shown_states(orbit: AbstractOrbit, motion: float, total: int) -> Int[np.ndarray, "F"]:
     """Return the states of the frames: the whole orbit, or the part about the transition if it moves too fast for that.
@@ -108,7 +112,7 @@ def draw_trail(axes: Axes, orbit: AbstractOrbit, part: Part, path: np.ndarray, c
     at = evenly_spread(path, _MOST_PIECES)
     pieces, past = theme.pieces(path[at]), np.searchsorted(at, part.past - 1, side="right")
     if color is None:
-        color = theme.CONTINUOUS if part.is_flow else theme.time_colors(orbit, part.path.time[at][1:])
+        color = part.colors(orbit, part.path.time[at][1:])
         look["label"] = "continuous" if part.is_flow else theme.option("label", None)
     look = {"linewidth": 1.2 if part.is_flow else 2, "zorder": 2} | look
     trail = LineCollection(pieces, colors=color, **look)
@@ -241,18 +245,10 @@ def motion_in_space(orbit: Orbit) -> float:
     return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(box_in_space(orbit.system).half)))
 
 
-def draw_body_in_space(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
-    """Draw a body on SE(3) as a box, and others beside; return what shows a frame."""
-    return _draw_in_space(axes, orbit, parts, lambda states: states.configuration[:, :3, 3], box_in_space(orbit.system))
-
-
-def draw_path_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
-    """Draw a path in three coordinates and a point on it; return what shows a frame."""
-    return _draw_in_space(axes, orbit, parts, track.points, None)
-
-
-def _draw_in_space(axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, box: Box | None) -> Show:
-    paths = [points(part.path) for part in parts]
+def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+    """Draw a path in three coordinates with a body on SE(3) as a box, or a point; return what shows a frame."""
+    box = box_in_space(orbit.system) if isinstance(orbit, Orbit) else None
+    paths = [track.points(part.path) for part in parts]
     reach = 0.0 if box is None else float(np.linalg.norm(box.half) * _ARM + np.linalg.norm(box.center))
     every = np.concatenate(paths)
     floor = _draw_floor(axes, np.concatenate([every - reach, every + reach]))
@@ -261,7 +257,7 @@ def _draw_in_space(axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: 
         shows.append(draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1))
         shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5))
         if box is None:
-            shows.append(draw_point(axes, part, _VIEW(points(part.frames))[0]))
+            shows.append(draw_point(axes, part, _VIEW(track.points(part.frames))[0]))
         else:
             shows.append(_draw_box_with_axes(axes, part, box, floor))
     theme.legend(axes, loc="upper right")
@@ -331,11 +327,19 @@ def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
     own = parts[0]
     view = best_view(own.path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
-    shows = [_beside(axes, view, other, gamma) for other in parts[1:]]
-    colors = theme.time_colors(orbit, own.path.time[1:])
-    shows += [_trace(axes, view, own, gamma, colors, 1.8), _sticks(axes, view, own.frames, gamma, name)]
+    shows = []
+    for part in reversed(parts):
+        shows.append(_trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:])))
+        shows.append((_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name))
     theme.legend(axes, loc="lower left", borderaxespad=0.0)
     return together(shows)
+
+
+def _ghost(axes: Axes, view: View, frames: Orbit, *_: Any) -> Show:
+    """Draw the edges of the box of a flow."""
+    axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
+    poses, show_box = frames.configuration, draw_box(axes, view, box_in_sphere(frames.system), zorder=4.5, ghost=True)
+    return lambda frame: show_box(poses[frame])
 
 
 def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Axis, name: str) -> Show:
@@ -357,15 +361,7 @@ def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Axis, name: str) -> Sh
     return show
 
 
-def _beside(axes: Axes, view: View, other: Part, gamma: Axis) -> Show:
-    colors = np.broadcast_to(to_rgba(theme.CONTINUOUS), (len(other.path) - 1, 4))
-    axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
-    show_trace = _trace(axes, view, other, gamma, colors, 1.2)
-    show_box = draw_box(axes, view, box_in_sphere(other.frames.system), zorder=4.5, ghost=True)
-    return together([show_trace, lambda frame: show_box(other.frames.configuration[frame])])
-
-
-def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarray, "L 4"], width: float) -> Show:
+def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarray, "L 4"]) -> Show:
     """Return what shows the path of an axis up to a frame, beneath the body and above it."""
     points = of.path.configuration @ gamma
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
@@ -378,7 +374,7 @@ def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarr
     def show(frame: int) -> None:
         past = pieces * int(of.past[frame] - 1)
         for side, collection in sides.items():
-            set_curve(collection, view, path[: past + 1], colors[:past], width=width, side=side)
+            set_curve(collection, view, path[: past + 1], colors[:past], width=1.2 if of.is_flow else 1.8, side=side)
 
     return show
 

@@ -138,11 +138,8 @@ def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadM
     if values[np.isfinite(values)].min() < 0 < values[np.isfinite(values)].max():
         line: Any = {"colors": [theme.QUIET], "linewidths": 1.0, "linestyles": "dashed", "zorder": 2}
         zero = axes.contour(*_middles(sides), np.ma.masked_invalid(values), levels=[0.0], **line)
-    figure: Any = axes.get_figure(root=False)
-    words = f"gain in {symbol(component)} per area"
-    bar = figure.colorbar(mesh, ax=axes, label=words, pad=0.02, extend="both" if most > top else "neither")
-    bar.outline.set_visible(False)
-    return mesh, zero, bar
+    words, extend = f"gain in {symbol(component)} per area", "both" if most > top else "neither"
+    return mesh, zero, theme.color_key(axes, mesh, words, extend=extend)
 
 
 def _draw_gait(axes: Axes, path: Float[np.ndarray, "K 2"]) -> Line2D:

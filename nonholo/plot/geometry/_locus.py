@@ -1,6 +1,6 @@
 """The momentum locus in space and cut by a plane; the variety of displacements, foliated by its energy levels."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
@@ -11,9 +11,10 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Path3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from nonholo import analysis
 from nonholo.analysis import InvariantCurve, MomentumLocus, invariant_curve
 from nonholo.analysis.planar import planar_map
-from nonholo.base.checks import array, checked_energies, error, instance, pair
+from nonholo.base.checks import array, checked_energies, error, instance, pair, refuse_given, shown
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
@@ -57,7 +58,7 @@ class MomentumLocusPicture(NamedTuple):
 
 @theme.in_style
 def momentum_locus(
-    locus: MomentumLocus,
+    locus: MomentumLocus | Discretization,
     orbit: Orbit | None = None,
     curve: InvariantCurve | None = None,
     axes: Axes3D | None = None,
@@ -73,7 +74,7 @@ def momentum_locus(
     Reference: [fedorov-zenkov-2004], equation (Steiner).
 
     Args:
-        locus: The result of `nh.momentum_locus`.
+        locus: The result of `nh.momentum_locus`, or the discretization of which it is computed.
         orbit: A discrete orbit of the same system.
         curve: The result of `nh.invariant_curve`: all momenta of one energy, on the surface.
         axes: Axes in space; new ones by default.
@@ -90,7 +91,7 @@ def momentum_locus(
         (1, 2)
     """
     where = "plot.momentum_locus"
-    instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
+    locus = _locus_of(where, locus)
     own_orbit(f"{where}(orbit=...)", orbit, locus.discrete)
     space: Any = axes
     if space is None:
@@ -117,6 +118,14 @@ def momentum_locus(
         path = draw_in_time(space, orbit, orbit.momentum @ components, states, zorder=8, size=24, label="orbit")
     _dress(space, locus, sheet, view)
     return MomentumLocusPicture(space, surface, doubles, whiskers, pinch, triple_dot, curves, rest, path)
+
+
+def _locus_of(where: str, locus: Any) -> MomentumLocus:
+    """Return a locus, that of a discretization if it is one."""
+    if isinstance(locus, Discretization):
+        return analysis.momentum_locus(locus)
+    remedy = "Pass what `nh.momentum_locus` or `nh.discretize` returned."
+    return instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", remedy)
 
 
 def _lines(axes: Any, curves: Iterable[Float[np.ndarray, "K 3"]], label: str, **look: Any) -> tuple[Any, ...]:
@@ -191,7 +200,7 @@ class LocusSection(NamedTuple):
 
 @theme.in_style
 def locus_section(
-    locus: MomentumLocus,
+    locus: MomentumLocus | Discretization,
     normal: Array = (0.0, 0.0, 1.0),
     offset: Array = 0.0,
     axes: Axes | None = None,
@@ -203,7 +212,7 @@ def locus_section(
     the polynomial but not to the locus.
 
     Args:
-        locus: The result of `nh.momentum_locus`.
+        locus: The result of `nh.momentum_locus`, or the discretization of which it is computed.
         normal: Three components of the body momentum, not all zero.
         offset: The component of the momentum along the normal.
         axes: Where to draw; a new figure by default.
@@ -219,7 +228,7 @@ def locus_section(
         1
     """
     where = "plot.locus_section"
-    instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
+    locus = _locus_of(where, locus)
     if not np.any(n := array(f"{where}(normal=...)", normal, (3,), "Pass three components.")):
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")
     n = n / np.linalg.norm(n)
@@ -300,7 +309,7 @@ class InvariantCurvesPicture(NamedTuple):
 
 @theme.in_style
 def invariant_curves(
-    discrete: Discretization,
+    discrete: Discretization | Sequence[InvariantCurve],
     orbit: Orbit | None = None,
     axes: Axes | None = None,
     energies: Any = None,
@@ -314,10 +323,11 @@ def invariant_curves(
     right edge upside down. An orbit jumps along its curve, from the repelling to the attracting equilibrium.
 
     Args:
-        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew"; or curves of one, in a list, that
+            `nh.invariant_curve` returned.
         orbit: An orbit of it.
         axes: Where to draw; a new figure by default.
-        energies: Energies of the curves; by default nine.
+        energies: Energies of the curves; by default nine, or those of the curves that are passed.
         **look: Title, label, color and more: `nh.plot.Look`.
 
     Raises:
@@ -330,13 +340,10 @@ def invariant_curves(
         (2, 2)
     """
     where = "plot.invariant_curves"
-    discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
+    discrete, curves = _curves_of(where, discrete, energies)
     sheet = cast(Sheet, sheet_of(discrete.system))
     own_orbit(f"{where}(orbit=...)", orbit, discrete)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
-    wishes = sheet.energies(float(discrete.time_step)) if energies is None else energies
-    wishes = checked_energies(f"{where}(energies=...)", wishes)
-    curves = [invariant_curve(discrete, energy, _POINTS) for energy in wishes]
     levels = tuple(draw_level(axes, sheet, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
@@ -350,3 +357,18 @@ def invariant_curves(
     theme.write_title(axes, "Displacements")
     sheet.dress(axes, curves, np.empty((0, 2)))
     return InvariantCurvesPicture(axes, levels, own, stable, unstable, path)
+
+
+def _curves_of(where: str, value: Any, energies: Any) -> tuple[Discretization, list[InvariantCurve]]:
+    """Return a map and curves of it: those that are passed, else those of the energies."""
+    if not isinstance(value, list | tuple):
+        discrete = planar_map(f"{where}(discrete=...)", value)[0]
+        if energies is None:
+            energies = cast(Sheet, sheet_of(discrete.system)).energies(float(discrete.time_step))
+        wishes = checked_energies(f"{where}(energies=...)", energies)
+        return discrete, [invariant_curve(discrete, energy, _POINTS) for energy in wishes]
+    if not value or not all(isinstance(each, InvariantCurve) and each.discrete is value[0].discrete for each in value):
+        remedy = "Pass a list of what `nh.invariant_curve` returned for one map."
+        raise error(f"{where}(discrete=...)", "be curves of one discretization", shown(value), remedy)
+    refuse_given(where, "be left out beside curves, which have theirs", "Pass `discrete`.", energies=(energies, None))
+    return value[0].discrete, list(value)

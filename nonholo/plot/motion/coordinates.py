@@ -155,12 +155,16 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     if len(space) == 1:
         names = [symbol(space[0]), symbol(space[0], is_rate=True)]
         return Track("Phase plane", names, lambda of: np.hstack([of.configuration, of.body_velocity]), False)
-    places = [name for name in _PLACES if name in space]
-    is_place = places[:2] == ["x", "y"]
-    columns = places if is_place else list(space[:2])
-    names = [symbol(name) for name in columns]
+    columns = _names_of_path(space)
+    is_place, names = columns[:2] == ["x", "y"], [symbol(name) for name in columns]
     title = "Path" if is_place else f"Plane of {names[0]} and {names[1]}"
     return Track(title, names, functools.partial(_columns, [space.index(name) for name in columns]), is_place)
+
+
+def _names_of_path(names: tuple[str, ...]) -> list[str]:
+    """Return the coordinates of a path: those of a place if they have both of the plane, else the first two."""
+    places = [name for name in _PLACES if name in names]
+    return places if places[:2] == ["x", "y"] else list(names[:2])
 
 
 def momentum_track(orbit: AbstractOrbit) -> Track:
@@ -201,8 +205,7 @@ draw_path = theme.in_style(draw_track)
 def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the coordinates that the path does not show against time; all if it shows all."""
     names = orbit.coordinates
-    places = [name for name in _PLACES if name in names]
-    first = places if places[:2] == ["x", "y"] else list(names[:2])
+    first = _names_of_path(names)
     others = [i for i, name in enumerate(names) if name not in first] or list(range(len(names)))
     symbols = [symbol(names[i]) for i in others]
     draw_components(axes, orbit, flow, functools.partial(_columns, others), symbols, "Coordinates", "coordinates")

@@ -92,7 +92,7 @@ def body_axis_track(
     orbit = parts.orbit_with_poses(where, orbit)
     if orbit.system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
-    flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)
+    flow = parts.same_space("body_axis_track(flow=...)", flow, orbit, parts.orbit_with_poses)
     gamma = _body_axis(orbit, body_axis)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     part = _part(orbit)

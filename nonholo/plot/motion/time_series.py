@@ -17,12 +17,11 @@ from nonholo.discrete import Discretization
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.parts import drawable_in_time, evenly_in_box, orbit_with_poses
+from nonholo.plot.parts import draw_line, drawable_in_time, orbit_with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
 Series = Callable[[Any], np.ndarray]
-_MOST_POINTS = 2000
-_MOST_LINES = 60  # momenta in one panel
+MOST_LINES = 60  # momenta, or velocities, in one panel
 
 
 @theme.in_style
@@ -43,9 +42,9 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     """
     momentum = orbit.restricted_momentum
     k = momentum.shape[1]
-    largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
+    largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:MOST_LINES])
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
-    of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
+    of_many = "" if k <= MOST_LINES else f", the {MOST_LINES} largest of {k}"
     title, names = f"{kind} along the constraint{of_many}", [f"$r_{{{i + 1}}}$" for i in largest]
     draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, largest], names, title, "momentum")
 
@@ -56,7 +55,7 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
     right = axes.twinx()
     scales = ((axes, r"heading  $\theta/\pi$"), (right, "speed  $v_1$"))
     for row, ((one, name), color) in enumerate(zip(scales, theme.COMPONENTS, strict=False)):
-        _line(one, orbit.time, _turn_and_speed(orbit)[row], color=color, linewidth=2.0, zorder=3)
+        draw_line(one, orbit.time, _turn_and_speed(orbit)[row], color=color, linewidth=2.0, zorder=3)
         if flow is not None:
             _flow(one, flow.time, _turn_and_speed(flow)[row], has_label=one is right)
         one.set_ylabel(name, color=color)
@@ -74,14 +73,9 @@ def _turn_and_speed(orbit: Orbit) -> tuple[Float[np.ndarray, "K"], Float[np.ndar
     return blade.heading(orbit) / np.pi, blade.speed(orbit)
 
 
-def _line(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], **look: Any) -> None:
-    at = evenly_in_box(np.stack([time, values], axis=1), _MOST_POINTS)
-    axes.plot(time[at], values[at], marker="o" if len(time) == 1 else None, **look)
-
-
 def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], has_label: bool) -> None:
     look: Any = {"color": theme.CONTINUOUS, "linewidth": 1.3, "dashes": (3, 3), "zorder": 4}
-    _line(axes, time, values, label="continuous" if has_label else None, **look)
+    draw_line(axes, time, values, label="continuous" if has_label else None, **look)
 
 
 def draw_components(
@@ -91,7 +85,7 @@ def draw_components(
     few = len(names) <= len(theme.COMPONENTS)
     for values, color, name in zip(of(orbit).T, theme.component_colors(len(names)), names, strict=True):
         look = {"color": color, "linewidth": 2.0 if few else 1.0, "label": name if few else None, "zorder": 3}
-        _line(axes, orbit.time, values, **look)
+        draw_line(axes, orbit.time, values, **look)
     if not few:
         axes.text(0.99, 0.97, f"{names[0]} to {names[-1]}", transform=axes.transAxes, ha="right", va="top")
     if flow is not None:
@@ -218,9 +212,7 @@ def _over_rounding(
         starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
         low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
         return rounding, axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **own)
-    at = evenly_in_box(np.stack([orbit.time, error], axis=1), _MOST_DOTS)
-    look = theme.own_look(theme.CONTINUOUS)
-    return rounding, axes.plot(orbit.time[at], error[at], linewidth=1.0, zorder=3, **look)[0]
+    return rounding, draw_line(axes, time, error, linewidth=1.0, zorder=3, **theme.own_look(theme.CONTINUOUS))
 
 
 def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:

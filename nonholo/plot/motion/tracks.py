@@ -224,7 +224,7 @@ def point_track(
     if n < 2 or group != SE(n):
         remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
-    flow = parts.same_group("point_track(flow=...)", flow, orbit)
+    beside: Any = parts.same_space("point_track(flow=...)", flow, orbit, parts.orbit_with_poses)
     axes = _axes(axes, 2 if n == 2 else 3)
     largest = np.sort(np.argsort(-np.ptp(orbit.position, axis=0), kind="stable")[:3])  # in which the path is largest
     at = parts.evenly_spread(orbit.position)
@@ -233,7 +233,7 @@ def point_track(
     names = [f"${letter}$" for letter in "xyz"] if largest.max() < 3 else [f"$x_{i + 1}$" for i in largest]
     view = dress_path(axes, points, names[: len(largest)])
     track = parts.draw_in_time(axes, orbit, position, at, zorder=3)
-    curve = None if flow is None else parts.draw_flow(axes, flow.position[:, largest])
+    curve = None if beside is None else parts.draw_flow(axes, beside.position[:, largest])
     frames = _frames(axes, orbit, largest, _ARM * np.ptp(view, axis=1).max())
     mark_path_ends(axes, points, orbit)
     theme.legend_above(axes, "Reference point")
@@ -244,7 +244,7 @@ def _in_coordinates(where: str, orbit: AbstractOrbit, axes: Any, flow: AbstractO
     if (track := track_of(orbit)) is None or not track.is_place:
         remedy = "Name its coordinates, `LagrangeDAlembert(coordinates=...)`, or use `overview`."
         raise error(where, "have coordinates named x and y", f"{', '.join(orbit.coordinates)}", remedy)
-    parts.same_space("point_track(flow=...)", flow, orbit, "Pass one of the same system.")
+    flow = parts.same_space("point_track(flow=...)", flow, orbit)
     dimension = len(track.names)
     axes = _axes(axes, dimension)
     path, bodies, curve = draw_track(track, orbit, flow, axes)
