@@ -45,6 +45,11 @@ class Problem:
         masks = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
         return {k: x[..., :3] if k == "turn" else x for k, x in masks.items() if x.any()}
 
+    @property
+    def measured(self) -> list[np.ndarray]:
+        """The measured numbers of each kind."""
+        return [self.kinds[kind][..., : there.shape[-1]][there] for kind, there in self.there.items()]
+
     def at(self, point: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind the residuals and both derivatives, computed once for each point."""
         if self.last is None or not np.array_equal(self.last[0], point):
@@ -208,14 +213,15 @@ class Search(NamedTuple):
 
     def run(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
-        is_known, kinds = np.isfinite(self.levels), self.problem.kinds
-        least = [_EXACT * np.abs(kinds[kind][..., :3][there]).max() for kind, there in self.problem.there.items()]
-        noise, tolerance = np.where(is_known, self.levels, 1.0), _COARSE
+        is_known, measured = np.isfinite(self.levels), self.problem.measured
+        least = np.array([_EXACT * np.abs(numbers).max() or _EXACT for numbers in measured])
+        spread = np.array([numbers.std() for numbers in measured])  # no less than the noise
+        noise, tolerance = np.where(is_known, self.levels, np.maximum(spread, least)), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
             now = estimate(self.problem, point, noise, self.loss)
             before = noise
-            noise = np.where(is_known, self.levels, np.maximum(now.levels, [x or _EXACT for x in least]))
+            noise = np.where(is_known, self.levels, np.maximum(now.levels, least))
             is_settled = np.abs(noise / before - 1).max() < _SETTLED
             if is_settled and tolerance == _FINE:
                 return Solution(point, noise, now, now.cosine < _MISSED or bool((noise <= least).all()))
