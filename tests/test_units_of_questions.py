@@ -139,6 +139,28 @@ def _turned(mass: float, length: float, time: float) -> Answer:
     return {"outcome": str(found.outcome), "torques": found.controls * time**2 / (mass * length**2)}
 
 
+def _driven(mass: float, length: float, time: float) -> Answer:
+    """Return the forces of two wheels that lead past a disc and through a place, within bounds of states."""
+    pytest.importorskip("casadi")
+    wheels = np.array([[2.5 / length, 0.5, 0.0], [-2.5 / length, 0.5, 0.0]])
+    inertia, center = 0.05 * mass * length**2, (0.05 * length, 0.0)
+    body = nh.LLSystem.from_inertia(mass, inertia, center, nh.SE(2), constraint_subspace=wheels)
+    start = {"body_velocity": np.array([0.1, 0.3 * length, 0.0]) / time}
+    goal = {"configuration": [[1, 0, 1.2 * length], [0, 1, 0.8 * length], [0, 0, 1]], "restricted_velocity": (0.0, 0.0)}
+    speed = 2.0 * length / time
+    bounds = {"y": (-0.1 * length, 0.85 * length), "theta": (-0.7, 1.4), "restricted_velocity": (-speed, speed)}
+    found = nh.steer(
+        nh.discretize(body, 0.1 * time),
+        start,
+        goal,
+        steps=30,
+        via={12: (0.5 * length, 0.15 * length)},
+        obstacles=([(0.6 * length, 0.45 * length)], 0.2 * length),
+        state_bounds=bounds,
+    )
+    return {"outcome": str(found.outcome), "forces": found.controls @ wheels.T * time**2 / (mass * length)}
+
+
 def _fitted(mass: float, length: float, time: float) -> Answer:
     """Return the numbers of a sleigh from a guess that is far off, and what is said where they have no unit of mass."""
     size, start = mass * length**2, np.array([1.0, 0.5 * length]) / time
@@ -169,6 +191,7 @@ QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  
     "track": (_track, (), 0.0),
     "fit": (_fitted, (), 1e-9),
     "controls": (_turned, (), 1e-6),
+    "wheels": (_driven, (), 1e-9),
 }
 KEPT = (
     "momenta of sleigh",
