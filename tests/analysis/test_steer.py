@@ -130,6 +130,7 @@ test_bad_arguments_are_refused = refusals(
     ({"goal": {"pose": ASIDE}}, "name only"),
     ({"goal": {"configuration": 2 * ASIDE}}, "lie in SE"),
     ({"start": 5}, "name only"),
+    ({"start": {"restricted_velocity": [[1.0, 2.0], [1.0]]}}, "be an array of real numbers"),
     ({"start": {"body_velocity": (0.0, 0.0, 1.0)}}, r"`steer.start\(body_velocity=...\)` must satisfy the constraint"),
     ({"start": {"body_velocity": (0.0, 1.0, 0.0), "momentum": (0.0, 1.0)}}, "exactly one of body_velocity, momentum"),
     ({"goal": {"restricted_velocity": (0.0, 1.0, 0.0)}}, "one number per admissible direction"),

@@ -45,10 +45,11 @@ class Problem:
         masks = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
         return {k: x[..., :3] if k == "turn" else x for k, x in masks.items() if x.any()}
 
-    @property
-    def measured(self) -> list[np.ndarray]:
-        """The measured numbers of each kind."""
-        return [self.kinds[kind][..., : there.shape[-1]][there] for kind, there in self.there.items()]
+    def columns(self, kind: str, rows: Float[np.ndarray, "T K _"]) -> list[np.ndarray]:
+        """Return the numbers of each trial and column where a kind is measured, if there are any."""
+        there = self.there[kind]
+        columns = [rows[t, there[t, :, c], c] for t in range(len(there)) for c in range(there.shape[2])]
+        return [each for each in columns if len(each)]
 
     def at(self, point: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind the residuals and both derivatives, computed once for each point."""
@@ -213,9 +214,10 @@ class Search(NamedTuple):
 
     def run(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
-        is_known, measured = np.isfinite(self.levels), self.problem.measured
-        least = np.array([_EXACT * np.abs(numbers).max() or _EXACT for numbers in measured])
-        spread = np.array([numbers.std() for numbers in measured])  # no less than the noise
+        is_known, kinds = np.isfinite(self.levels), self.problem.kinds
+        columns = [self.problem.columns(kind, kinds[kind]) for kind in self.problem.there]
+        least = np.array([_EXACT * np.abs(np.concatenate(each)).max() or _EXACT for each in columns])
+        spread = np.array([np.concatenate([x - x.mean() for x in each]).std() for each in columns])
         noise, tolerance = np.where(is_known, self.levels, np.maximum(spread, least)), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
@@ -285,8 +287,7 @@ class Search(NamedTuple):
 
     def _is_lost(self, solution: Solution, kind: str) -> bool:
         """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
-        there, rows = self.problem.there[kind], self.problem.at(solution.point)[kind][0]
-        columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
+        there, columns = self.problem.there[kind], self.problem.columns(kind, self.problem.at(solution.point)[kind][0])
         typical, step = _deviation(columns), _deviation([np.diff(column) / np.sqrt(2) for column in columns])
         level = float(self.levels[list(self.problem.there).index(kind)])
         if np.isfinite(level):

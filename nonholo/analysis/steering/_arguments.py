@@ -95,7 +95,7 @@ def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[
 def _end(name: str, system: System, end: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Return the velocities along the constraint and the poses that an end names, one or many of them."""
     check_names(f"steer({name}=...)", end)
-    w = _velocities(f"steer.{name}", system, named) if (named := velocities_of(end)) else None
+    w = _velocities(f"steer.{name}", system, velocities) if (velocities := velocities_of(end)) else None
     g, where, size = end.get("configuration"), f"steer.{name}(configuration=...)", system.group.identity.shape
     if g is not None:
         shape = (None,) * (len(shape_of(g)) - 2) + size
@@ -105,10 +105,11 @@ def _end(name: str, system: System, end: Any) -> tuple[np.ndarray | None, np.nda
     return w, g
 
 
-def _velocities(owner: str, system: System, named: dict[str, Any]) -> np.ndarray:
+def _velocities(owner: str, system: System, velocities: dict[str, Any]) -> np.ndarray:
     """Return the velocities along the constraint of an end, from those or from momenta that it names."""
-    name = one_start(owner, **named)
-    rows = array(f"{owner}({name}=...)", named[name], (None,) * max(1, min(2, np.ndim(named[name]))))
+    name = one_start(owner, **velocities)
+    axes = max(1, min(2, len(shape_of(velocities[name]))))
+    rows = array(f"{owner}({name}=...)", velocities[name], (None,) * axes, "Pass one, or one for each member.")
     starts = [Start(owner, name, row) for row in np.atleast_2d(rows)]
     momenta = [system.from_canonical(start.momentum(system, None)) for start in starts]
     if name == "restricted_velocity":
