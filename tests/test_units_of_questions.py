@@ -1,4 +1,4 @@
-"""Questions to bodies on groups, and to controls, in any unit of mass, length and time: the same answers."""
+"""Questions to bodies on groups, and to fits and controls, in any unit of mass, length and time: the same answers."""
 
 from collections.abc import Callable
 from typing import Any
@@ -139,6 +139,46 @@ def _turned(mass: float, length: float, time: float) -> Answer:
     return {"outcome": str(found.outcome), "torques": found.controls * time**2 / (mass * length**2)}
 
 
+def _driven(mass: float, length: float, time: float) -> Answer:
+    """Return the forces of two wheels that lead past a disc and through a place, within bounds of states."""
+    pytest.importorskip("casadi")
+    wheels = np.array([[2.5 / length, 0.5, 0.0], [-2.5 / length, 0.5, 0.0]])
+    inertia, center = 0.05 * mass * length**2, (0.05 * length, 0.0)
+    body = nh.LLSystem.from_inertia(mass, inertia, center, nh.SE(2), constraint_subspace=wheels)
+    start = {"body_velocity": np.array([0.1, 0.3 * length, 0.0]) / time}
+    goal = {"configuration": [[1, 0, 1.2 * length], [0, 1, 0.8 * length], [0, 0, 1]], "restricted_velocity": (0.0, 0.0)}
+    speed = 2.0 * length / time
+    bounds = {"y": (-0.1 * length, 0.85 * length), "theta": (-0.7, 1.4), "restricted_velocity": (-speed, speed)}
+    found = nh.steer(
+        nh.discretize(body, 0.1 * time),
+        start,
+        goal,
+        steps=30,
+        via={12: (0.5 * length, 0.15 * length)},
+        obstacles=([(0.6 * length, 0.45 * length)], 0.2 * length),
+        state_bounds=bounds,
+    )
+    return {"outcome": str(found.outcome), "forces": found.controls @ wheels.T * time**2 / (mass * length)}
+
+
+def _fitted(mass: float, length: float, time: float) -> Answer:
+    """Return the numbers of a sleigh from a guess that is far off, and what is said where they have no unit of mass."""
+    size, start = mass * length**2, np.array([1.0, 0.5 * length]) / time
+    truth = nh.ChaplyginSleigh(mass, 0.7 * size, 0.4 * length)
+    orbit = nh.simulate(nh.discretize(truth, 0.05 * time), restricted_velocity=start, steps=60)
+    noise = np.random.default_rng(0).normal(scale=1e-3, size=(3, 61)) * [[length], [length], [1.0]]
+    rows = np.array([*orbit.position.T, orbit.heading]) + noise
+    record = {"t": orbit.time, **dict(zip(("x", "y", "theta"), rows, strict=True))}
+
+    def sleigh(p: Answer) -> nh.ChaplyginSleigh:
+        return nh.ChaplyginSleigh(p.get("mass", mass), p["inertia"], p["a"])
+
+    found = nh.fit(sleigh, record, {"inertia": 5 * size, "a": -0.5 * length})
+    with pytest.raises(ValueError, match="none of inertia, mass alone"):
+        nh.fit(sleigh, record, {"inertia": size, "a": 0.3 * length, "mass": mass})
+    return {"outcome": found.outcome, "numbers": np.array([*found.parameters.values()]) / [size, length]}
+
+
 QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  # with the rounding errors of answers
     **{f"momenta of {name}": (_conserved, (name,), 0.0) for name in BODIES},
     "flow": (_flow, (False,), 1e-13),
@@ -149,7 +189,9 @@ QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  
     "bodies alike": (_alike, (), 0.0),
     "bodies compared": (_compared, (), 0.0),
     "track": (_track, (), 0.0),
+    "fit": (_fitted, (), 1e-9),
     "controls": (_turned, (), 1e-6),
+    "wheels": (_driven, (), 1e-9),
 }
 KEPT = (
     "momenta of sleigh",

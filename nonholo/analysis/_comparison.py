@@ -218,18 +218,14 @@ def _check_alike(orbit: AbstractOrbit, flow: AbstractOrbit) -> None:
     where = "compare(flow=...)"
     if orbit.space != flow.space:
         raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
-    if _has_rows(orbit) and _has_rows(flow):
-        is_alike = have_same_rows(orbit.system, flow.system)
-    else:
+    systems = orbit.system, flow.system
+    if all(each.is_wide for each in systems) or not all(hasattr(each, "constraint_subspace") for each in systems):
         is_alike = orbit.restricted_momentum.shape[1] == flow.restricted_momentum.shape[1]
+    else:
+        is_alike = have_same_rows(*systems)
     if not is_alike:
         remedy = "Momenta along different directions are no two values of one thing."
         raise error(where, "have the constraint of the orbit", "another constraint", remedy)
-
-
-def _has_rows(orbit: AbstractOrbit) -> bool:
-    """Return whether there are rows along which momenta are measured: not of very large bodies, nor in coordinates."""
-    return not orbit.system.is_wide and hasattr(orbit.system, "constraint_subspace")
 
 
 def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:

@@ -27,6 +27,7 @@ from nonholo.systems import (
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
+_MOST_ENTRIES = 1_000_000  # of displacements of arrowheads, whose logarithms are taken
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
@@ -121,13 +122,14 @@ def _energy_drift(energy: Float[np.ndarray, "K"], work: Any, *, forced: bool) ->
     return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
 
 
-def _largest_angle(orbit: Orbit) -> float:
+def _largest_angle(orbit: Orbit) -> float | None:
+    """Return the largest angle of a step; None of many large steps that are no turns in planes through one axis."""
     system, y, motion = orbit.system, orbit.canonical_chart, orbit.motion
-    if system.is_wide:
-        turning = len(cast(NormalForm, system.normal_form).coupling)
-        angles = 2 * np.arctan(np.linalg.norm(y[:, :turning], axis=1))  # of planes through one axis
-    elif isinstance(motion, Discretization) and motion.order == 2:
-        angles = motion.variety.angle(y)
+    if isinstance(motion, Discretization) and motion.order == 2:
+        turning = len(cast(NormalForm, system.normal_form).coupling) if system.is_wide else 0
+        angles = 2 * np.arctan(np.linalg.norm(y[:, :turning], axis=1)) if turning else motion.variety.angle(y)
+    elif system.is_wide and len(y) * system.group.size**2 > _MOST_ENTRIES:
+        return None
     else:
         angles = system.group.angle(system.group.log(orbit.displacement))
     return float(np.degrees(angles.max()))

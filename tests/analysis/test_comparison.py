@@ -115,11 +115,21 @@ def test_without_poses_momenta_and_energies_remain() -> None:
     assert nh.compare(run("veselova", 0.1, reconstruct=False), flow("veselova")).errors[1:] == (None, None)
 
 
+ARROWHEAD = nh.SuslovTop.arrowhead([1.0, 2.0, 3.0, 4.0], [0.3, 0.2, 0.1])
+TURNED = nh.LLSystem(nh.SO(4), ARROWHEAD.dense.mass_tensor, ARROWHEAD.constraint_subspace[[1, 0, 2]])
+
+
+def wide(system: nh.LLSystem | nh.SuslovTop) -> nh.Orbit:
+    """Return a step in four dimensions."""
+    return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=(0.3, 0.5, -0.4), steps=1)
+
+
 REFUSED = {
     "no orbit": (lambda: nh.compare(5, flow("top")), r"compare\(orbit=...\)` must be an orbit"),
     "no flow": (lambda: nh.compare(run("top", 0.1), None), r"compare\(flow=...\)` must be an orbit"),
     "group": (lambda: nh.compare(run("top", 0.1), flow("sleigh")), r"must move in SO\(3\). Got SE\(2\)"),
     "constraint": (lambda: nh.compare(run("top", 0.1), flow("free")), "the constraint of the orbit"),
+    "rows of an arrowhead": (lambda: nh.compare(wide(ARROWHEAD), wide(TURNED)), "the constraint of the orbit"),
     "times": (lambda: nh.compare(run("top", 0.1), flow("top", 5.0, 6.0)), "a time in common"),
     "no states": (lambda: nh.compare(run("top", 0.1)[:0], run("top", 0.1)), "a time in common"),
     "one": (lambda: nh.compare([run("top", 0.1)], flow("top")), "different time steps"),

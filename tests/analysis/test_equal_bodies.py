@@ -171,6 +171,11 @@ ANSWERS = {
             one.system.group.exp(0.1 * np.outer(np.arange(4.0), w @ one.system.constraint_subspace)),
         ).restricted_momentum
     ),
+    "angle of a composition": lambda one, w: np.array(
+        nh.invariants(
+            nh.simulate(nh.discretize(one.system, 0.3, order=4), restricted_velocity=w, steps=5)
+        ).largest_step_angle
+    ),
     "linearization": lambda one, w: (
         nh.linearize(one.system, body_velocity=0 * (w @ one.system.constraint_subspace)).matrix
     ),

@@ -110,7 +110,7 @@ HOLD = Feedback(DISK, np.zeros((4, 4)), None, np.zeros((4, 4, 8)), (_NONE, _NONE
 
 # What cannot be held is named before any work.
 test_bad_arguments_are_refused = refusals(
-    (lambda: HOLD.simulate(restricted_velocity=(0.0, 0.0)), "be left out"),
+    (lambda: HOLD.simulate(restricted_velocity=(0.0, 0.0)), "name only configuration and body_velocity or momentum"),
     ({"start": {"restricted_velocity": (0.0, 1.0)}}, "name only configuration and body_velocity"),
     ({"controls": np.zeros((4, 2))}, "have shape"),
     ({"state_weight": np.ones(4)}, "have shape"),

@@ -348,6 +348,7 @@ test_bad_arguments_are_refused = refusals(
     ({"guess": {}}, "name the parameters"),
     ({"system_of": lambda _: 3}, "left-invariant"),
     ({"system_of": 3}, "be a function"),
+    ({"system_of": lambda p: _sleigh({**p, "a": float(p["a"])})}, r"fit\(system_of=...\)` must be traceable by JAX"),
     ({"measurements": {"x": np.zeros(3)}}, "have a column `t`"),
     ({"measurements": {"t": np.zeros(3)}}, "after the one before"),
     ({"measurements": {"t": np.arange(3.0), "z": np.zeros(3)}}, "columns of a motion in"),

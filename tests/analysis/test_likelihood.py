@@ -11,7 +11,7 @@ from scipy.optimize import minimize, root_scalar
 
 from nonholo.analysis.inverse import Fit
 from nonholo.analysis.inverse._likelihood import Problem, Search, Solution, bent
-from nonholo.analysis.inverse._profile import Minimum, profile_of
+from nonholo.analysis.inverse._profile import Minimum, least_squares_at, profile_of
 
 FREE = np.full(2, -np.inf), np.full(2, np.inf)
 
@@ -171,6 +171,25 @@ def _scaled(shape: Callable, slope: Callable, rate: float) -> tuple[Minimum, Cal
     point = np.array([k, f @ y / (f @ f)])
     minimum = Minimum(lambda p: (y - p[1] * shape(p[0] * TIMES)) / s, derivatives, np.all, point, 13)
     return minimum, lambda x: (square(x) - square(k)) / s**2
+
+
+@pytest.mark.parametrize("exponent", [-40, 40])
+def test_search_does_not_depend_on_the_units_of_numbers(exponent: int) -> None:
+    """The size and the rate of a decay are found bit by bit alike in units that are powers of two."""
+    t, units = np.linspace(0.0, 3.0, 7), 2.0 ** np.array([exponent, -exponent])
+
+    def decay(x: np.ndarray) -> np.ndarray:
+        return x[0] * np.exp(-x[1] * t)
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        return np.exp(-x[1] * t)[:, None] * np.stack([np.ones(7), -x[0] * t], axis=1)
+
+    def least(unit: np.ndarray) -> np.ndarray:
+        rows, slopes = (lambda x: decay(x / unit) - decay(np.array([2.0, 0.7]))), (lambda x: slope(x / unit) / unit)
+        return least_squares_at(np.array([0.3, 3.0]) * unit, rows, slopes, 1e-6, None) / unit
+
+    np.testing.assert_array_equal(least(units), least(np.ones(2)))
+    np.testing.assert_allclose(least(units), [2.0, 0.7], rtol=1e-6)
 
 
 @pytest.mark.parametrize("level", [0.5, 0.95, 0.999])

@@ -8,7 +8,7 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.analysis.steering import Steering, _shooting
+from nonholo.analysis.steering import Steering, _arguments, _shooting
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
 ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
@@ -93,7 +93,17 @@ def test_goals_are_met_in_any_unit_of_length(length: float) -> None:
     place = ASIDE * [[1, 1, length], [1, 1, length], [1, 1, 1]]
     found = nh.steer(sleigh, {}, {"configuration": place, **REST}, steps=40)
     assert found.outcome in ("converged", "not least")
-    assert found.missed < 1e-8 * max(1.0, length)
+    assert found.missed < 1e-8
+
+
+def test_ends_name_velocities_as_other_runs_do() -> None:
+    """Starts by body velocities, of two members, and momenta, and such goals, are those by restricted velocities."""
+    system, w = SLEIGH.system, np.array([[0.1, 0.3], [0.0, 0.5]])
+    momenta, velocities = w[1] @ system.constrained_inertia, w @ system.constraint_subspace
+    for start, wanted in (({"body_velocity": velocities}, w), ({"momentum": momenta}, w[1:])):
+        (first, _, _, last), _ = _arguments.checked_ends(system, start, {"body_velocity": velocities[0]}, is_free=False)
+        np.testing.assert_allclose(first, wanted, rtol=1e-15, atol=1e-16)
+        np.testing.assert_allclose(last, w[: len(wanted)] * 0 + w[0], rtol=1e-15, atol=1e-16)
 
 
 @pytest.mark.profile("routes", instead="test_bounds_hold")
@@ -129,6 +139,10 @@ test_bad_arguments_are_refused = refusals(
     ({"goal": {"pose": ASIDE}}, "name only"),
     ({"goal": {"configuration": 2 * ASIDE}}, "lie in SE"),
     ({"start": 5}, "name only"),
+    ({"start": {"restricted_velocity": [[1.0, 2.0], [1.0]]}}, "be an array of real numbers"),
+    ({"start": {"body_velocity": (0.0, 0.0, 1.0)}}, r"`steer.start\(body_velocity=...\)` must satisfy the constraint"),
+    ({"start": {"body_velocity": (0.0, 1.0, 0.0), "momentum": (0.0, 1.0)}}, "exactly one of body_velocity, momentum"),
+    ({"goal": {"restricted_velocity": (0.0, 1.0, 0.0)}}, "one number per admissible direction"),
     ({"start": _starts(2), "goal": {"restricted_velocity": np.zeros((3, 2))}}, "as many members each"),
     ({"start": {"configuration": np.zeros((0, 3, 3))}}, "as many members each"),
     ({"bounds": (1.0, -1.0)}, "leave room"),

@@ -39,7 +39,7 @@ def _snakeboard() -> Program:
     rng = np.random.default_rng(3)
     system = nh.examples.snakeboard().system.plain
     nodes = CoordinateNodes(
-        system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5), None
+        system, np.float64(0.1), rng.normal(size=(1, 2)), np.ones(5), rng.normal(size=(3, 5)), np.zeros(5), None
     )
     bounds = StateBounds(rng.normal(size=(2, 10)), np.zeros(2), np.ones(2))
     steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step, bounds)
@@ -90,12 +90,11 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     np.testing.assert_allclose(whole @ v, bent, rtol=0, atol=1e-9 * np.abs(bent).max())
 
 
-@pytest.mark.parametrize("units", [(2.0**18, 1.0), (2.0**-18, 1.0), (1.0, 2.0**-10)])
-def test_controls_do_not_depend_on_units_of_mass_and_time(units: tuple[float, float]) -> None:
-    """IPOPT finds the same forces for a top and for a spring between two masses, to rounding."""
+@pytest.mark.parametrize("units", [(2.0**18, 1.0, 1.0), (2.0**-18, 2.0**40, 1.0), (1.0, 2.0**-40, 2.0**-10)])
+def test_controls_do_not_depend_on_units(units: tuple[float, float, float]) -> None:
+    """IPOPT finds the same forces for a top and for a spring between two masses, one of them bounded, to rounding."""
     tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     turned = {"configuration": nh.SO(3).exp([0.4, 0.2, 0.1]), "restricted_velocity": (0.0, 0.0)}
-    beside = {"configuration": (1.0, 0.5), "body_velocity": (0.0, 0.0)}
     pair = nh.LagrangeDAlembert(
         lambda q, v, p: p["mass"] * (v[0] ** 2 + v[1] ** 2 / 2) / 2 - p["spring"] * (q[0] - q[1]) ** 2 / 2,
         None,
@@ -103,16 +102,19 @@ def test_controls_do_not_depend_on_units_of_mass_and_time(units: tuple[float, fl
         parameters={"mass": 1.0, "spring": 0.5},
     )
 
-    def forces(mass: float, time: float) -> list[np.ndarray]:
-        system = pair.with_parameters(mass=mass, spring=0.5 * mass / time**2)
-        asked = (nh.SuslovTop(tensor * mass), {}, turned), (system, {"configuration": (0.0, 0.0)}, beside)
+    def forces(mass: float, length: float, time: float) -> list[np.ndarray]:
+        maps = nh.SuslovTop(tensor * mass), pair.with_parameters(mass=mass, spring=0.5 * mass / time**2)
+        top, masses = (nh.discretize(system, 0.1 * time) for system in maps)
+        beside = {"configuration": (length, 0.5 * length), "body_velocity": (0.0, 0.0)}
+        bounds = {"q2": (0.0, 0.52 * length), "body_velocity": (-1.3 * length / time, 1.3 * length / time)}
         steered = [
-            nh.steer(nh.discretize(x, 0.1 * time), start, to, steps=20, method="ipopt") for x, start, to in asked
+            nh.steer(top, {}, turned, steps=20, method="ipopt"),
+            nh.steer(masses, {"configuration": (0.0, 0.0)}, beside, steps=20, state_bounds=bounds),
         ]
         assert [each.outcome for each in steered] == ["converged", "converged"]
-        return [each.controls * time**2 / mass for each in steered]
+        return [each.controls * time**2 / mass / size for each, size in zip(steered, (1.0, length), strict=True)]
 
-    for found, expected in zip(forces(*units), forces(1.0, 1.0), strict=True):
+    for found, expected in zip(forces(*units), forces(1.0, 1.0, 1.0), strict=True):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
@@ -307,25 +309,29 @@ def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
 
 
 def test_bounds_of_states_are_linear_in_their_numbers() -> None:
-    """Rows say of random poses and momenta by how much position, heading and velocity are outside."""
+    """Rows say of random poses and momenta by how much position, heading and velocity are outside, in units."""
     system, rng = nh.ChaplyginSleigh(1.0, 0.6, 0.2, 0.1), np.random.default_rng(4)
     g, w = nh.SE(2).exp(rng.normal(size=(50, 3)) * [2.0, 1.0, 1.0]), rng.normal(size=(50, 2))
     heading, numbers = np.arctan2(g[:, 1, 0], g[:, 0, 0]), body_states(g, system.restricted_momentum(w))
-    nowhere = {"start": np.full((1, 11), np.nan)}
+    nowhere, names, length = (
+        {"start": np.full((1, 11), np.nan)},
+        body_numbers(system, 2.0),
+        system.displacement_units[1],
+    )
 
     def outside(**given: Any) -> np.ndarray:
-        bounds: Any = StateBounds.of(given, body_numbers(system), nowhere)
+        bounds: Any = StateBounds.of(given, names, nowhere)
         return np.array([bounds.outside(each) for each in numbers])
 
-    np.testing.assert_allclose(outside(y=(-0.3, 0.2)), _beyond(g[:, 1, 2], -0.3, 0.2), atol=1e-15)
-    velocity = np.maximum(_beyond(w[:, 0], -0.5, 0.5), _beyond(w[:, 1], -0.5, np.inf))
+    np.testing.assert_allclose(outside(y=(-0.3, 0.2)) * length, _beyond(g[:, 1, 2], -0.3, 0.2), atol=1e-15)
+    velocity = 2.0 * np.maximum(_beyond(w[:, 0], -0.5, 0.5), _beyond(w[:, 1], -0.5, np.inf) / length)
     np.testing.assert_allclose(outside(restricted_velocity=(-0.5, (0.5, np.inf))), velocity, atol=1e-15)
     for low, high in ((-0.4, 0.9), (-2.5, 0.1), (2.9, 4.0)):
         middle = (low + high) / 2
         turn = middle + np.angle(np.exp(1j * (heading - middle)))
         np.testing.assert_array_equal(outside(theta=(low, high)) > 0, _beyond(turn, low, high) > 0)
     near = body_states(nh.SE(2).exp(np.array([0.5 + 1e-6, 0.0, 0.0])), np.zeros(2))
-    narrow: Any = StateBounds.of({"theta": (-0.3, 0.5)}, body_numbers(system), nowhere)
+    narrow: Any = StateBounds.of({"theta": (-0.3, 0.5)}, names, nowhere)
     np.testing.assert_allclose(narrow.outside(near), 1e-6, rtol=1e-4)
 
 

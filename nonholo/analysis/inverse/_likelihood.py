@@ -46,6 +46,12 @@ class Problem:
         masks = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
         return {k: x[..., :3] if k == "turn" else x for k, x in masks.items() if x.any()}
 
+    def columns(self, kind: str, rows: Float[np.ndarray, "T K _"]) -> list[np.ndarray]:
+        """Return the numbers of each trial and column where a kind is measured, if there are any."""
+        there = self.there[kind]
+        columns = [rows[t, there[t, :, c], c] for t in range(len(there)) for c in range(there.shape[2])]
+        return [each for each in columns if len(each)]
+
     def at(self, point: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind the residuals and both derivatives, computed once for each point."""
         if self.last is None or not np.array_equal(self.last[0], point):
@@ -235,13 +241,15 @@ class Search(NamedTuple):
     def settle(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
         is_known, kinds = np.isfinite(self.levels), self.problem.kinds
-        least = [_EXACT * np.abs(kinds[kind][..., :3][there]).max() for kind, there in self.problem.there.items()]
-        noise, tolerance = np.where(is_known, self.levels, 1.0), _COARSE
+        columns = [self.problem.columns(kind, kinds[kind]) for kind in self.problem.there]
+        least = np.array([_EXACT * np.abs(np.concatenate(each)).max() or _EXACT for each in columns])
+        spread = np.array([np.concatenate([x - x.mean() for x in each]).std() for each in columns])
+        noise, tolerance = np.where(is_known, self.levels, np.maximum(spread, least)), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
             now = estimate(self.problem, point, noise, self.loss)
             before = noise
-            noise = np.where(is_known, self.levels, np.maximum(now.levels, [x or _EXACT for x in least]))
+            noise = np.where(is_known, self.levels, np.maximum(now.levels, least))
             is_settled = np.abs(noise / before - 1).max() < _SETTLED
             if is_settled and tolerance == _FINE:
                 return Solution(point, noise, now, now.cosine < _MISSED or bool((noise <= least).all()))
@@ -308,8 +316,7 @@ class Search(NamedTuple):
         return any(self._misses_kind(point, times, kind) for kind in self.problem.there)
 
     def _misses_kind(self, point: np.ndarray, times: float, kind: str) -> bool:
-        there, rows = self.problem.there[kind], self.problem.at(point)[kind][0]
-        columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
+        there, columns = self.problem.there[kind], self.problem.columns(kind, self.problem.at(point)[kind][0])
         typical, step = _deviation(columns), _deviation([np.diff(column) / np.sqrt(2) for column in columns])
         level = float(self.levels[list(self.problem.there).index(kind)])
         if np.isfinite(level):

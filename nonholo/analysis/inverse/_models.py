@@ -11,12 +11,12 @@ import numpy as np
 from nonholo.analysis.inverse._likelihood import Shapes, by_name
 from nonholo.analysis.inverse._measurements import WHERE, Names, at_nodes, ends_of, first, measured_rows, names_of
 from nonholo.base.checks import error
-from nonholo.base.traced import TracedFunction, rows_above
+from nonholo.base.traced import rows_above
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
 from nonholo.groups import SE, matrix_from_quaternion
-from nonholo.lagrange_dalembert import checked_state, equations, place, tangents
+from nonholo.lagrange_dalembert import checked_state, equations, place, tangents, trace
 from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
@@ -345,7 +345,9 @@ def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
         return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in own])
 
     structure = jax.tree.structure(system_of(by_name(shapes, numbers)))
-    return structure, TracedFunction(leaves, (jax.ShapeDtypeStruct(numbers.shape, float),))
+    return structure, trace(
+        "fit(system_of=...)", leaves, "the parameters", (jax.ShapeDtypeStruct(numbers.shape, float),)
+    )
 
 
 def coordinate_model(system: Any, again: Any) -> CoordinateModel:

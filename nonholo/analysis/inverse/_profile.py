@@ -180,9 +180,15 @@ class _Search(NamedTuple):
 def least_squares_at(
     begin: np.ndarray, rows: Any, slope: Any, tolerance: float, most: int | None, ends: Any = (-np.inf, np.inf)
 ) -> np.ndarray:
-    """Return where a sum of squares is least, from a begin on, by the derivatives of its rows."""
+    """Return where a sum of squares is least, from a begin on, by the derivatives of its rows.
+
+    Numbers are searched in units of their errors, in which SciPy's tolerances of steps and gradients make sense.
+    """
+    lengths = np.linalg.norm(slope(begin), axis=0)
+    unit = np.exp2(-np.round(np.log2(np.where(np.isfinite(lengths) & (lengths > 0), lengths, 1.0))))  # no rounding
     options: Any = {"x_scale": "jac", "max_nfev": most, **dict.fromkeys(("ftol", "xtol", "gtol"), tolerance)}
-    return least_squares(rows, begin, slope, ends, **options).x
+    functions = (lambda x: rows(x * unit)), begin / unit, (lambda x: slope(x * unit) * unit)
+    return least_squares(*functions, tuple(end / unit for end in ends), **options).x * unit
 
 
 def _along(slope: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.checks import array, error, is_integer, pair, shape_of, shown
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
-from nonholo.systems import System, in_group
+from nonholo.systems import Start, System, direction_lengths, in_group, one_start
 
 Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
 """First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
@@ -66,36 +66,55 @@ def limits_of_steps(bounds: Any, steps: int, k: int) -> Limits:
     return np.tile(low, steps), np.tile(high, steps)
 
 
-def check_names(where: str, end: Any, velocity: str = "restricted_velocity") -> None:
+VELOCITIES = "restricted_velocity", "body_velocity", "momentum"
+"""Names of the velocity of a body on a group; of other systems all but the first."""
+
+
+def check_names(where: str, end: Any, velocities: tuple[str, ...] = VELOCITIES) -> None:
     """Refuse an end of a motion that is no dictionary of a configuration and a velocity."""
-    if not isinstance(end, Mapping) or not set(end) <= {"configuration", velocity}:
-        raise error(where, f"name only configuration and {velocity}", shown(end), "Pass a dictionary of them.")
+    if not isinstance(end, Mapping) or not set(end) <= {"configuration", *velocities}:
+        names = " or ".join(velocities)
+        raise error(where, f"name only configuration and {names}", shown(end), "Pass a dictionary of them.")
+
+
+def velocities_of(end: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what an end names besides the configuration."""
+    return {name: value for name, value in end.items() if name != "configuration" and value is not None}
 
 
 def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[Ends, bool]:
     """Return ends of members, and whether there is but one; a free goal need not name anything."""
-    w, g = _end("steer(start=...)", system, start)
-    to_velocity, to_pose = _end("steer(goal=...)", system, goal)
+    w, g = _end("start", system, start)
+    to_velocity, to_pose = _end("goal", system, goal)
     if to_pose is None and to_velocity is None and not is_free:
         raise error("steer(goal=...)", "name a pose or a velocity", "neither", "Pass configuration=.")
     first = np.zeros(system.rank) if w is None else w, system.group.identity if g is None else g
     return _members((*first, to_pose, to_velocity))
 
 
-def _end(where: str, system: System, end: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
+def _end(name: str, system: System, end: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Return the velocities along the constraint and the poses that an end names, one or many of them."""
-    check_names(where, end)
-    w, g = end.get("restricted_velocity"), end.get("configuration")
-    if w is not None:
-        shape = (None,) * (len(shape_of(w)) - 1) + (system.rank,)
-        w = array(f"{where}['restricted_velocity']", w, shape[-2:], "Pass one number for each admissible direction.")
+    check_names(f"steer({name}=...)", end)
+    w = _velocities(f"steer.{name}", system, velocities) if (velocities := velocities_of(end)) else None
+    g, where, size = end.get("configuration"), f"steer.{name}(configuration=...)", system.group.identity.shape
     if g is not None:
-        where, size = f"{where}['configuration']", system.group.identity.shape
         shape = (None,) * (len(shape_of(g)) - 2) + size
         g = array(where, g, shape[-3:], f"Pass elements of {system.group} as matrices.")
         for one in g.reshape(-1, *size):
             in_group(where, system.group, one)
     return w, g
+
+
+def _velocities(owner: str, system: System, velocities: dict[str, Any]) -> np.ndarray:
+    """Return the velocities along the constraint of an end, from those or from momenta that it names."""
+    name = one_start(owner, **velocities)
+    axes = max(1, min(2, len(shape_of(velocities[name]))))
+    rows = array(f"{owner}({name}=...)", velocities[name], (None,) * axes, "Pass one, or one for each member.")
+    starts = [Start(owner, name, row) for row in np.atleast_2d(rows)]
+    momenta = [system.from_canonical(start.momentum(system, None)) for start in starts]
+    if name == "restricted_velocity":
+        return rows
+    return np.array([system.restricted_velocity(each) for each in momenta]).reshape(*rows.shape[:-1], system.rank)
 
 
 def _members(ends: tuple[np.ndarray | None, ...]) -> tuple[Ends, bool]:
@@ -114,8 +133,12 @@ _WHERE = "steer(state_bounds=...)"
 _OUTSIDE = 1e-8  # by which a start or a goal may miss them
 
 
+Rows = tuple[np.ndarray, Any]
+"""Coefficients of the numbers of a state, and the unit of what they give, one for each row or for all."""
+
+
 class StateBounds(NamedTuple):
-    """Bounds of every state after the start, low <= rows @ numbers <= high.
+    """Bounds of every state after the start, low <= rows @ numbers <= high, in units.
 
     Attributes:
         rows: Coefficients of the numbers of a state.
@@ -128,7 +151,7 @@ class StateBounds(NamedTuple):
     high: Float[np.ndarray, "b"]
 
     @classmethod
-    def of(cls, bounds: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self:
+    def of(cls, bounds: Any, names: Mapping[str, Rows], ends: Mapping[str, np.ndarray]) -> Self:
         """Return checked bounds of rows by name.
 
         Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle: cosine and sine.
@@ -136,24 +159,24 @@ class StateBounds(NamedTuple):
         bounds, remedy = {} if bounds is None else bounds, f"Pass {{name: (least, largest)}} of {', '.join(names)}."
         if not isinstance(bounds, Mapping) or not set(bounds) <= set(names):
             raise error(_WHERE, "name components of a state", shown(bounds), remedy)
-        parts = {name: cls._one(name, both, names[name]) for name, both in bounds.items()}
+        parts = {name: cls._one(name, both, *names[name]) for name, both in bounds.items()}
         for name, part in parts.items():
             for end, numbers in ends.items():
-                if (off := part.outside(numbers)) > _OUTSIDE:
-                    got, remedy = f"{name} outside by {off:.3g}", "Move it, or make the bounds wider."
-                    raise error(f"steer({end}=...)", "lie within state_bounds", got, remedy)
-        none = cls(np.zeros((0, next(iter(names.values())).shape[1])), np.zeros(0), np.zeros(0))
+                if part.outside(numbers) > _OUTSIDE:
+                    off, remedy = (part.excess(numbers) * names[name][1]).max(), "Move it, or make the bounds wider."
+                    raise error(f"steer({end}=...)", "lie within state_bounds", f"{name} outside by {off:.3g}", remedy)
+        none = cls(np.zeros((0, next(iter(names.values()))[0].shape[1])), np.zeros(0), np.zeros(0))
         return cls(*map(np.concatenate, zip(none, *parts.values(), strict=True)))
 
     @classmethod
-    def _one(cls, name: str, both: Any, rows: np.ndarray) -> Self:
+    def _one(cls, name: str, both: Any, rows: np.ndarray, unit: Any) -> Self:
         """Return the bounds of one name: of an angle those of the cosine of its distance from their middle."""
         where = f"{_WHERE}['{name}']"
         low, high = (_limit(where, end, len(rows)) for end in pair(where, both))
         if not (low < high).all():
             raise error(where, "leave room between them", shown(both), "Pass the least and the largest value.")
         if not np.iscomplexobj(rows):
-            return cls(rows, low, high)
+            return cls(rows / np.reshape(unit, (-1, 1)), low / unit, high / unit)
         middle, half = (low + high) / 2, (high - low) / 2
         if not (half < np.pi).all():
             raise error(where, "be less than a turn apart", shown(both), "Leave a heading out that may be any.")
@@ -161,11 +184,14 @@ class StateBounds(NamedTuple):
         return cls((np.exp(-1j * middle) / size * rows).real, np.cos(half) / size, np.full(1, np.inf))
 
     def outside(self, numbers: Float[np.ndarray, "... x"]) -> float:
-        """Return by how much states are outside, at most; what is NaN is not."""
+        """Return by how much states are outside, at most."""
+        return float(self.excess(numbers).max(initial=0.0))
+
+    def excess(self, numbers: Float[np.ndarray, "... x"]) -> Float[np.ndarray, "... b"]:
+        """Return by how much states are outside of each bound, negative within; what is NaN is not."""
         values = np.nan_to_num(numbers) @ self.rows.T
         is_free = (np.isnan(numbers)[..., None, :] & (self.rows != 0)).any(axis=-1)
-        excess = np.where(is_free, 0.0, np.maximum(self.low - values, values - self.high))
-        return float(excess.max(initial=0.0))
+        return np.where(is_free, 0.0, np.maximum(self.low - values, values - self.high))
 
 
 def _limit(where: str, value: Any, count: int) -> np.ndarray:
@@ -179,29 +205,35 @@ def _limit(where: str, value: Any, count: int) -> np.ndarray:
     return array(where, finite, (count,) if np.ndim(finite) else (), remedy) + infinite + np.zeros(count)
 
 
-def body_numbers(system: System) -> dict[str, np.ndarray]:
+def state_units(system: System, duration: float) -> tuple[Float[np.ndarray, "dim"], Float[np.ndarray, "k"]]:
+    """Return units of displacements, radians and the length of the body, and velocities that pass these in a time."""
+    units = system.displacement_units
+    return units, 1 / direction_lengths(system.constraint_subspace, units) / duration
+
+
+def body_numbers(system: System, duration: float) -> dict[str, Rows]:
     """Return rows by name for the entries of a pose, then momenta along the constraint."""
-    size = system.group.size**2
+    size, (lengths, speeds) = system.group.size**2, state_units(system, duration)
     unit = np.eye(size + system.rank)
     velocity = np.linalg.inv(system.constrained_inertia) @ unit[size:]
-    return {"restricted_velocity": velocity} | _pose_numbers(system.group, unit[:size])
+    return {"restricted_velocity": (velocity, speeds)} | _pose_numbers(system.group, unit[:size], lengths[-1])
 
 
-def _pose_numbers(group: Any, rows: Float[np.ndarray, "NN x"]) -> dict[str, np.ndarray]:
+def _pose_numbers(group: Any, rows: Float[np.ndarray, "NN x"], length: float) -> dict[str, Rows]:
     """Return rows by name from those for the entries of a pose."""
     entries, names = rows.reshape(group.size, group.size, -1), {}
     if group.is_affine:
-        names = {name: entries[i, -1:] for i, name in zip(range(group.size - 1), "xyz", strict=False)}
-    return names | ({"theta": entries[:1, 0] + 1j * entries[1:2, 0]} if group == SE(2) else {})
+        names = {name: (entries[i, -1:], length) for i, name in zip(range(group.size - 1), "xyz", strict=False)}
+    return names | ({"theta": (entries[:1, 0] + 1j * entries[1:2, 0], 1.0)} if group == SE(2) else {})
 
 
-def bounds_of_body(bounds: Any, system: System, ends: Ends) -> StateBounds:
+def bounds_of_body(bounds: Any, system: System, ends: Ends, duration: float) -> StateBounds:
     """Return checked bounds of states on a group, in which all starts and goals lie."""
     w, g, to_pose, to_velocity = ends
     pose = np.full_like(g, np.nan) if to_pose is None else to_pose
     velocity = np.full_like(w, np.nan) if to_velocity is None else to_velocity
     start, goal = body_states(g, system.restricted_momentum(w)), body_states(pose, system.restricted_momentum(velocity))
-    return StateBounds.of(bounds, body_numbers(system), {"start": start, "goal": goal})
+    return StateBounds.of(bounds, body_numbers(system, duration), {"start": start, "goal": goal})
 
 
 def body_states(poses: Float[np.ndarray, "... N N"], momenta: Float[np.ndarray, "... k"]) -> np.ndarray:
@@ -209,13 +241,14 @@ def body_states(poses: Float[np.ndarray, "... N N"], momenta: Float[np.ndarray, 
     return np.concatenate([poses.reshape(*poses.shape[:-2], -1), momenta], axis=-1)
 
 
-def coordinate_numbers(system: Any) -> dict[str, np.ndarray]:
-    """Return rows by name for velocities, then coordinates or the entries of a pose."""
+def coordinate_numbers(system: Any, sizes: Float[np.ndarray, "n"], duration: float) -> dict[str, Rows]:
+    """Return rows by name for velocities, then coordinates or the entries of a pose, for a way of some size."""
     n = system.dimension
     unit = np.eye(n + math.prod(system.shapes[0]))
+    velocity = {"body_velocity": (unit[:n], sizes / duration)}
     if not system.coordinates:
-        return {"body_velocity": unit[:n]} | _pose_numbers(system.group, unit[n:])
-    return {"body_velocity": unit[:n]} | {name: unit[n + i, None] for i, name in enumerate(system.coordinates)}
+        return velocity | _pose_numbers(system.group, unit[n:], sizes[-1])
+    return velocity | {name: (unit[n + i, None], sizes[i]) for i, name in enumerate(system.coordinates)}
 
 
 def size_of_positions(system: Any) -> int | None:

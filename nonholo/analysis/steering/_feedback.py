@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.steering._arguments import checked_limits
-from nonholo.base.checks import array, error, needs, positive_definite, refuse_given, shape_of, symmetric
+from nonholo.analysis.steering._arguments import VELOCITIES, check_names, checked_limits, velocities_of
+from nonholo.base.checks import array, error, needs, positive_definite, shape_of, symmetric
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly
 from nonholo.base.results import result
@@ -69,6 +69,7 @@ class Feedback(Keeper):
         *,
         restricted_velocity: Any = None,
         body_velocity: Any = None,
+        momentum: Any = None,
         configuration: Any = None,
         disturbance: Any = None,
         misreading: Any = None,
@@ -78,7 +79,8 @@ class Feedback(Keeper):
         Args:
             restricted_velocity: The first velocity along the constraint, of a body on a group; by default that of the
                 reference.
-            body_velocity: The first velocity in coordinates; by default that of the reference.
+            body_velocity: The first body velocity, or velocity in coordinates.
+            momentum: The first momentum.
             configuration: The first configuration; by default that of the reference.
             disturbance: Body covectors beside the controls, (steps, dim); in coordinates forces.
             misreading: The error added to the state where the feedback reads it, (steps, n).
@@ -92,22 +94,20 @@ class Feedback(Keeper):
         where = "Feedback.simulate"
         with needs("jax", where):
             from nonholo.analysis.steering._tracks import closed_loop, track_of
-        track = track_of(where, self.discrete, {})
-        starts = {"restricted_velocity": restricted_velocity, "body_velocity": body_velocity}
-        w, remedy = starts.pop(track.start), f"Pass {track.start}=."
-        refuse_given(where, "be left out", remedy, **{name: (value, None) for name, value in starts.items()})
-        nodes, ways = track.nodes(self.reference), np.linalg.pinv(track.rows)
+        track, values = track_of(where, self.discrete), (restricted_velocity, body_velocity, momentum)
+        start = velocities_of(dict(zip(VELOCITIES, values, strict=True)))
+        check_names(where, start, track.velocities)
+        nodes = track.nodes(self.reference)
+        start = start or {track.velocities[0]: nodes[1][0] @ np.linalg.pinv(track.rows)}
+        start["configuration"] = nodes[0][0] if configuration is None else configuration
 
         def table(name: str, value: Any, default: np.ndarray) -> np.ndarray:
             return default if value is None else array(f"{where}({name}=...)", value, default.shape)
 
-        w, g = table(track.start, w, nodes[1][0] @ ways), nodes[0][0]
-        if configuration is not None:
-            g = track.places.configuration(f"{where}(configuration=...)", configuration)
         push = table("disturbance", disturbance, np.zeros_like(self.controls))
         misread = table("misreading", misreading, np.zeros_like(self.gains[:, 0]))
         tables = self.controls @ track.rows.T, self.gains, misread, push
-        return Tracking(*closed_loop(where, track, nodes, {"configuration": g, track.start: w}, tables, self.limits))
+        return Tracking(*closed_loop(where, track, nodes, start, tables, self.limits))
 
 
 def tracking_feedback(
@@ -145,8 +145,7 @@ def tracking_feedback(
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint, whose table of forces goes into
             the controls; or one in coordinates, or by functions on a group.
-        start: `configuration` and `restricted_velocity` of the reference, in coordinates `body_velocity`, as for
-            `steer`.
+        start: Of the reference, as for `steer`.
         controls: Body covectors of the reference, (steps, dim), in coordinates forces: `Steering.controls`, or zeros
             for a free motion.
         state_weight: Q, of errors per time: a number, (n,) for a diagonal, or (n, n), with n = dim + k. Not negative.
@@ -185,7 +184,8 @@ def tracking_feedback(
     with needs("jax", where):
         from nonholo.analysis.steering._tracks import track_of
         from nonholo.simulation.traced import roll
-    track = track_of(where, discrete, start)
+    track = track_of(where, discrete)
+    check_names(f"{where}(start=...)", start, track.velocities)
     k, dim = track.rows.shape
     Q = _weight(f"{where}(state_weight=...)", state_weight, dim + k)
     F = _weight(f"{where}(final_weight=...)", final_weight, dim + k)
@@ -194,7 +194,8 @@ def tracking_feedback(
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     track.check(where, len(table))
-    reference = roll(where, discrete, **{track.start: np.zeros(k), **start}, controls=table, steps=len(table))
+    rest = {} if velocities_of(start) else {track.velocities[0]: np.zeros(k)}
+    reference = roll(where, discrete, **start, **rest, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")
     A, B = interruptibly(lambda: track.linearize(track.nodes(reference), table))

@@ -17,7 +17,7 @@ import numpy as np
 from nonholo import lagrange_dalembert
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import Limits, Way
-from nonholo.analysis.steering._shooting import driven_side_by_side, sizes
+from nonholo.analysis.steering._shooting import driven_side_by_side, goal_gap, goal_units, sizes
 from nonholo.analysis.steering._steer import driven
 from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
@@ -59,10 +59,7 @@ class GroupNodes(NamedTuple):
 
     def goal_gap(self, x: Array) -> Array:
         """Return what vanishes at the goal and is no number of the state."""
-        if self.pose is None:
-            return jnp.zeros(0)
-        group = self.free.system.group
-        return group.log(group.inverse(self.pose) @ self.state(x)[0])
+        return goal_gap(self.free.system, (None, None, self.pose, None), *self.state(x))
 
     def places(self, x: Array) -> Array:
         """Return where the points of the outline are, (points, n)."""
@@ -123,7 +120,8 @@ class CoordinateNodes(NamedTuple):
         system: The system.
         time_step: h.
         outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `MovingOutline`.
-        directions: Rows span the admissible velocities near the goal; none where its velocity is free.
+        unit: Units of velocities in which each has the same energy.
+        directions: Rows span the admissible velocities near the goal, in these; none where its velocity is free.
         velocity: The last velocity.
         pose: The last pose, None where free and in coordinates.
     """
@@ -131,6 +129,7 @@ class CoordinateNodes(NamedTuple):
     system: Any
     time_step: Array
     outline: Any
+    unit: Array
     directions: Array
     velocity: Array
     pose: Array | None
@@ -152,7 +151,8 @@ class CoordinateNodes(NamedTuple):
         off_pose = jnp.zeros(0) if self.pose is None else departure(self.pose, place[: len(self.pose)])
         if not len(self.directions):
             return off_pose
-        rows, off = equations.forms(self.system, place), p - equations.momentum(self.system, place, self.velocity)
+        rows = equations.forms(self.system, place) * self.unit
+        off = (p - equations.momentum(self.system, place, self.velocity)) * self.unit
         along = self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
         return jnp.append(off_pose, along)
 
@@ -195,17 +195,17 @@ class Goal(NamedTuple):
 
 def checked_start(discrete: Any, start: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return place and velocity of the start."""
-    _arguments.check_names("steer(start=...)", start, "body_velocity")
+    _arguments.check_names("steer(start=...)", start, _arguments.VELOCITIES[1:])
     if discrete.system.force is not None:
         discrete.system.forced(None, np.zeros((1, discrete.system.dimension)))  # refuses a system that has forces
-    motion = {"body_velocity": start.get("body_velocity", np.zeros(discrete.system.dimension))}
-    return lagrange_dalembert.checked_state(discrete.system, start.get("configuration"), motion, 0.0, "steer")
+    motion = _arguments.velocities_of(start) or {"body_velocity": np.zeros(discrete.system.dimension)}
+    return lagrange_dalembert.checked_state(discrete.system, start.get("configuration"), motion, 0.0, "steer.start")
 
 
 def checked_goal(discrete: Any, goal: Any, is_free: bool) -> Goal:
     """Return the goal; its configuration may name some coordinates alone, a free one nothing."""
     where, system = "steer(goal=...)", discrete.system
-    _arguments.check_names(where, goal, "body_velocity")
+    _arguments.check_names(where, goal, ("body_velocity",))
     q, v = goal.get("configuration"), goal.get("body_velocity")
     if q is None and v is None and not is_free:
         raise error(where, "name coordinates or a velocity", "neither", "Pass configuration=.")
@@ -232,14 +232,50 @@ def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.
     return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
 
 
+class Extent(NamedTuple):
+    """The size of a motion in coordinates.
+
+    Attributes:
+        unit: Units of velocities in which each has the same kinetic energy.
+        far: The way in these.
+        duration: The time that it takes.
+    """
+
+    unit: Float[np.ndarray, "n"]
+    far: float
+    duration: float
+
+    @property
+    def sizes(self) -> Float[np.ndarray, "n"]:
+        """The way in each coordinate, or direction of a group."""
+        return self.far * self.unit
+
+
+def extent_of_way(discrete: Any, start: tuple[np.ndarray, np.ndarray], goal: Goal, way: Way, steps: int) -> Extent:
+    """Return the size of the way to the goal and to places, or of that at the first velocity."""
+    (x, v), system, duration = start, discrete.system, steps * float(discrete.time_step)
+    unit, size = lagrange_dalembert.tangents.units(system.plain, x, v), system.shapes[0][0]
+    q, last = x[:size], goal.end(system, x, duration)[:size]
+    ways = [system.places.departure(q, last) / unit, duration * v / unit]
+    at = _arguments.numbers_of_position(system)
+    ways += [(place - q.ravel()[at]) / _of_position(system, unit) for place in way.via.values()]
+    return Extent(unit, float(max(np.abs(each).max() for each in ways)) or 1.0, duration)
+
+
+def _of_position(system: Any, numbers: Float[np.ndarray, "n"]) -> Float[np.ndarray, "_"]:
+    """Return the numbers of coordinates, or of directions of a group, that belong to positions."""
+    at = _arguments.numbers_of_position(system)
+    return numbers[at] if system.coordinates else numbers[-len(at) :]
+
+
 def coordinate_problem(
-    discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way
+    discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way, extent: Extent
 ) -> Problem:
     """Return the problem of a system in coordinates or on a group, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
     steps, size = len(limits[0]) // n, system.shapes[0][0]
     last = goal.end(system, x, steps * discrete.time_step)
-    nodes = _nodes(discrete, way, last, goal)
+    nodes = _nodes(discrete, way, last, goal, extent.unit)
     first = np.append(x, lagrange_dalembert.momentum(system, x, v))
     program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
     q, at = x[:size], _arguments.numbers_of_position(system)
@@ -248,44 +284,46 @@ def coordinate_problem(
     if way.outline.shape[-1]:
         way.check("start", _arguments.points_at(system, q, way.outline))
     path, forces = _coordinate_guess(system, (q, last[:size]), way, steps)
-    unit, duration = lagrange_dalembert.tangents.units(system.plain, x, v), steps * float(nodes.time_step)
-    far = np.abs([system.places.departure(q, last[:size]), duration * v] / unit).max() or 1.0  # in one kinetic energy
+    push = extent.far / extent.unit / extent.duration**2
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
-        bent = system.places.beside(path, spread * far * unit * bow * rng.normal(size=n))
-        noise = spread * far / unit / duration**2 * rng.normal(size=(steps, n))
+        bent = system.places.beside(path, spread * extent.sizes * bow * rng.normal(size=n))
+        noise = spread * push * rng.normal(size=(steps, n))
         return _coordinate_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
         by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
-        return _coordinate_gap(program, goal, way, by(discrete, (v, q), forces))
+        return _coordinate_gap(program, goal, way, extent, by(discrete, (v, q), forces))
 
     return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
 
 
-def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal) -> CoordinateNodes:
+def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarray) -> CoordinateNodes:
     """Return the unknowns of steps to a place, where the system is to have a velocity or none."""
     system, h, n = discrete.system.plain, np.float64(discrete.time_step), discrete.system.dimension
     if goal.velocity is None:
-        return CoordinateNodes(system, h, way.outline, np.zeros((0, n)), np.zeros(n), goal.pose)
-    directions = np.linalg.svd(in_double(equations.forms, system, last))[2][system.constraints :]
-    return CoordinateNodes(system, h, way.outline, directions, goal.velocity, goal.pose)
+        return CoordinateNodes(system, h, way.outline, unit, np.zeros((0, n)), np.zeros(n), goal.pose)
+    directions = np.linalg.svd(in_double(equations.forms, system, last) * unit)[2][system.constraints :]
+    return CoordinateNodes(system, h, way.outline, unit, directions, goal.velocity, goal.pose)
 
 
-def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: Any) -> float:
-    """Return by what an orbit misses its goal, obstacles and places; infinity where it ends before."""
-    q, system = orbit.configuration, program.steps.nodes.system
+def _coordinate_gap(program: Program, goal: Goal, way: Way, extent: Extent, orbit: Any) -> float:
+    """Return by what an orbit misses its goal, obstacles and places, in units; infinity where it ends before."""
+    q, nodes = orbit.configuration, program.steps.nodes
     if len(q) <= len(program.rows) or not np.isfinite(q[-1]).all():
         return np.inf
-    off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
-    off += np.abs(program.goal_gap(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
+    system, sizes = nodes.system, extent.sizes
+    off = [abs(q[-1, i] - number) / sizes[i] for i, number in goal.coordinates.items()]
+    last = np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1])
+    momenta = np.full(len(nodes.directions), extent.far / extent.duration)
+    off += np.abs(program.goal_gap(last) / np.append(sizes[: 0 if goal.pose is None else None], momenta)).tolist()
     flat = q.reshape(len(q), -1)
     off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], flat[1:]], axis=1)))
     if way.outline.shape[-1]:
         at = flat[:, _arguments.numbers_of_position(system)]
-        off.append(way.gap(_arguments.points_at(system, q, way.outline), at))
+        off.append(way.gap(_arguments.points_at(system, q, way.outline), at) / _of_position(system, sizes).max())
     return float(max(off, default=0.0))
 
 
@@ -343,17 +381,14 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
 
 
 def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: Rollout) -> float:
-    """Return by what the orbit of one member misses its goal, obstacles and places; infinity where it ends before."""
-    system, (poses,), last = discrete.system, orbits.configuration, orbits.restricted_momentum[0, -1]
-    off, (_, _, to_pose, to_velocity) = [way.gap(_arguments.body_points(poses, way.outline), poses[:, :-1, -1])], ends
-    if not np.isfinite(last).all():
+    """Return by what the orbit of a member misses its goal, obstacles and places, in units; infinity where it ends."""
+    system, (poses,), (momenta,) = discrete.system, orbits.configuration, orbits.restricted_momentum
+    if not np.isfinite(momenta[-1]).all():
         return np.inf
-    off.append(way.bounds.outside(_arguments.body_states(poses, orbits.restricted_momentum[0])))
-    if to_pose is not None:
-        off.append(np.abs(system.group.log(system.group.inverse(to_pose) @ poses[-1])).max())
-    if to_velocity is not None:
-        off.append(np.abs(system.restricted_velocity(last) - to_velocity).max())
-    return float(max(off))
+    off = goal_gap(system, ends, poses[-1], momenta[-1]) / goal_units(discrete, len(poses) - 1, ends)
+    too_near = way.gap(_arguments.body_points(poses, way.outline), poses[:, :-1, -1]) / system.displacement_units[-1]
+    outside = way.bounds.outside(_arguments.body_states(poses, momenta))
+    return float(np.abs(off).max(initial=max(too_near, outside)))
 
 
 def _numbers(nodes: GroupNodes, poses: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... x"]:
@@ -385,11 +420,11 @@ def _group_guess(
 
 def _bent(discrete: Discretization, poses: np.ndarray, aside: np.ndarray, way: Way) -> np.ndarray:
     """Return poses bent aside between their ends; lengths are in proportion to what there is on the way."""
-    group, scale = discrete.system.group, np.ones(discrete.system.group.dim)
+    group, scale = discrete.system.group, discrete.system.displacement_units.copy()
     if group.is_affine:
         n = group.size - 1
         places = np.concatenate([poses[:, :n, n], way.centers])
-        scale[-n:] = np.linalg.norm(np.ptp(places, axis=0)) / 2 or 1.0
+        scale[-n:] = np.linalg.norm(np.ptp(places, axis=0)) / 2 or scale[-n:]
     bow = np.sin(np.linspace(0, np.pi, len(poses)))[:, None]
     return poses @ group.exp(bow * aside * scale)
 

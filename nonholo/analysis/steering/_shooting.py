@@ -15,7 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits
+from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, state_units
 from nonholo.base.progress import go_on
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
@@ -43,17 +43,28 @@ def _gaps(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, A
     covectors = np.linalg.pinv(system.constraint_subspace).T
 
     def gap_of(forces: Array, ends: Ends) -> tuple[Array, Array]:
-        (w, g, to_pose, to_velocity), parts = ends, []
-        orbit = _orbit(discrete, forces @ covectors, (w, g), len(forces))
-        if to_pose is not None:
-            parts.append(system.group.log(system.group.inverse(to_pose) @ orbit.configuration[-1]))
-        if to_velocity is not None:
-            parts.append(system.restricted_velocity(orbit.restricted_momentum[-1]) - to_velocity)
-        gap = jnp.concatenate(parts)
+        orbit = _orbit(discrete, forces @ covectors, ends[:2], len(forces))
+        gap = goal_gap(system, ends, orbit.configuration[-1], orbit.restricted_momentum[-1])
         return gap, gap
 
     slopes, values = jax.vmap(jax.jacrev(gap_of, has_aux=True))(forces, ends)
     return values, slopes
+
+
+def goal_gap(system: Any, ends: Any, g: Array, momentum: Array) -> Float[Array, "c"]:
+    """Return by what a last pose and momentum miss those of a goal, which may be free."""
+    (_, _, to_pose, to_velocity), parts = ends, [momentum[:0]]
+    if to_pose is not None:
+        parts.append(system.group.log(system.group.inverse(to_pose) @ g))
+    if to_velocity is not None:
+        parts.append(system.restricted_velocity(momentum) - to_velocity)
+    return g.__array_namespace__().concatenate(parts)
+
+
+def goal_units(discrete: Discretization, steps: int, ends: Ends) -> Float[np.ndarray, "c"]:
+    """Return units of what a goal is missed by."""
+    units = state_units(discrete.system, steps * float(discrete.time_step))
+    return np.concatenate([np.zeros(0), *(x for x, end in zip(units, ends[2:], strict=True) if end is not None)])
 
 
 @compile_double
@@ -249,8 +260,7 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
     system, everyone, block = discrete.system, np.arange(len(ends[0])), min(BLOCK, len(ends[0]))
     steps = len(limits[0]) // system.rank
     lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
-    units = system.displacement_units, 1 / lengths / (steps * float(discrete.time_step))
-    units = np.concatenate([part for part, end in zip(units, ends[2:], strict=True) if end is not None])
+    units = goal_units(discrete, steps, ends)
 
     def gaps(members: np.ndarray, unit: Any, f: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
@@ -267,7 +277,7 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
         is_nearer = _largest(left) < _largest(misses[failures])
         forces[failures[is_nearer]], misses[failures[is_nearer]] = others[is_nearer] * unit, left[is_nearer]
     words = np.where(is_least, "converged", np.where(_largest(misses) < TOLERANCE, "not least", "not found"))
-    return forces.reshape(len(forces), steps, -1), _largest(misses * units), words
+    return forces.reshape(len(forces), steps, -1), _largest(misses), words
 
 
 def _largest(misses: Float[np.ndarray, "m c"]) -> Float[np.ndarray, "m"]:

@@ -31,9 +31,9 @@ class Steering(Keeper):
         controls: Body covectors, (steps, dim), as `rollout` takes them; in coordinates forces on them.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
         missed: The largest of the numbers by which the orbit under the controls misses the goal, a place on the way,
-            the clearance of an obstacle, or bounds of states.
-        outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby; by shooting lengths are
-            measured in that of the body, velocities in the time of the motion. "not least": nothing is
+            the clearance of an obstacle, or bounds of states: angles, lengths over that of the body, velocities over
+            those that pass these in the time of the motion. In coordinates its size is that of the way.
+        outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby. "not least": nothing is
             missed, but there may be less cost. "infeasible": from every guess IPOPT came to where the equations and
             bounds contradict each other, which proves nothing of other ways. "not found": none of these.
     """
@@ -110,10 +110,10 @@ def steer(
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates, or by
             functions on a group. JAX must trace a potential that is a function.
-        start: `configuration` and `restricted_velocity`; by default the identity, at rest. In coordinates
-            `configuration` and `body_velocity`.
-        goal: The same; components that it does not name are free. In coordinates a configuration may name some of them
-            alone: {"x": 1.0, "theta": 0.0}.
+        start: `configuration` and `restricted_velocity`, `body_velocity` or `momentum`; by default the identity, at
+            rest. In coordinates `configuration` and `body_velocity` or `momentum`.
+        goal: The same, in coordinates no momentum; components that it does not name are free. In coordinates a
+            configuration may name some of them alone: {"x": 1.0, "theta": 0.0}.
         steps: Number of steps N.
         bounds: Least and largest force, numbers or one for each row; zero for both where there is no motor.
         cost: "effort".
@@ -165,7 +165,8 @@ def steer(
     subject = _in_jax(discrete, steps, "jax" if method == "shooting" else "steer")
     ends, is_one = _arguments.checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
-    way = way._replace(bounds=_arguments.bounds_of_body(state_bounds, discrete.system, ends))
+    duration = steps * float(discrete.time_step)
+    way = way._replace(bounds=_arguments.bounds_of_body(state_bounds, discrete.system, ends, duration))
     limits = _arguments.limits_of_steps(bounds, steps, discrete.system.rank)
     with progress_bar("members", progress) as report:
         by = functools.partial(_by_ipopt, way=way, report=report) if method == "ipopt" else _by_shooting
@@ -238,18 +239,20 @@ def _steered_in_coordinates(
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
-        from nonholo.analysis.steering._problems import MovingOutline, checked_goal, checked_start, coordinate_problem
+        from nonholo.analysis.steering import _problems
         from nonholo.analysis.steering._transcription import transcribe
-    n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
-    q = x[: discrete.system.shapes[0][0]]
+    n, start = discrete.system.dimension, _problems.checked_start(discrete, ends[0])
+    q, v = start[0][: discrete.system.shapes[0][0]], start[1]
     if callable(way.outline):
-        way = way._replace(outline=MovingOutline.of(discrete.system, way.outline))
+        way = way._replace(outline=_problems.MovingOutline.of(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = _arguments.limits_of_steps(bounds[0], steps, n)
-    goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
+    goal = _problems.checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, q), "goal": goal.numbers(discrete.system)}
-    way = way._replace(bounds=StateBounds.of(bounds[1], _arguments.coordinate_numbers(discrete.system), both))
-    problem = coordinate_problem(discrete, ((x, v), goal), limits, way)
+    extent = _problems.extent_of_way(discrete, start, goal, way, steps)
+    names = _arguments.coordinate_numbers(discrete.system, extent.sizes, extent.duration)
+    way = way._replace(bounds=StateBounds.of(bounds[1], names, both))
+    problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, extent)
     forces, gap, outcome = interruptibly(lambda: transcribe(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     return Steering(discrete, (v, q), forces, *map(np.asarray, (effort, gap, outcome)))

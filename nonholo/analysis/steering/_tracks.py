@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.analysis.steering._arguments import check_names
+from nonholo.analysis.steering._arguments import VELOCITIES
 from nonholo.analysis.steering._shooting import linearize_steps
 from nonholo.base.checks import error, within_memory
 from nonholo.base.types import Array
@@ -27,7 +27,7 @@ class GroupTrack(NamedTuple):
     discrete: Discretization
     places: Any
     rows: np.ndarray
-    start = "restricted_velocity"
+    velocities = VELOCITIES
 
     def check(self, where: str, steps: int) -> None:
         """Refuse constraints that are fixed in space, a table of forces, and what does not fit in memory."""
@@ -54,7 +54,7 @@ class CoordinateTrack(NamedTuple):
     discrete: AbstractCoordinateDiscretization[Any]
     places: Any
     rows: np.ndarray
-    start = "body_velocity"
+    velocities = VELOCITIES[1:]
 
     def check(self, where: str, steps: int) -> None:
         """Refuse what does not fit in memory."""
@@ -70,15 +70,12 @@ class CoordinateTrack(NamedTuple):
         return tangents.forced_slopes(self.discrete, *nodes, controls)
 
 
-def track_of(where: str, discrete: Any, start: Any) -> GroupTrack | CoordinateTrack:
-    """Return the kind of motion of a discretization, whose start has the right names."""
+def track_of(where: str, discrete: Any) -> GroupTrack | CoordinateTrack:
+    """Return the kind of motion of a discretization."""
     if not isinstance(discrete, AbstractCoordinateDiscretization):
         system = as_discretization(f"{where}(discrete=...)", discrete, forced=True).system
-        track = GroupTrack(discrete, places.Poses(system.group), np.asarray(system.constraint_subspace))
-    else:
-        track = CoordinateTrack(discrete, discrete.system.places, np.eye(discrete.system.dimension))
-    check_names(f"{where}(start=...)", start, track.start)
-    return track
+        return GroupTrack(discrete, places.Poses(system.group), np.asarray(system.constraint_subspace))
+    return CoordinateTrack(discrete, discrete.system.places, np.eye(discrete.system.dimension))
 
 
 def _answer(

@@ -324,7 +324,7 @@ def minimize(
         casadi.Sparsity(each.shape[0], each.shape[1], each.indptr.tolist(), each.indices.tolist()) for each in patterns
     )
     scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
-    effort = max(program.cost(unit)[1] * unit)
+    effort = max(program.cost(np.where(bounds[0] < bounds[1], unit, 0.0))[1] * unit) or 1.0
 
     def cost(x: np.ndarray) -> tuple[Any, ...]:
         value, slope = program.cost(x * unit)
