@@ -290,6 +290,7 @@ def _step(matrix: Float[np.ndarray, "d d"], defect: Float[np.ndarray, "d"]) -> F
     return right[:rank].T @ (gains * (left[:, :rank].T @ defect))
 
 
+_NEAR = "equilibria(configuration=...)"
 _MOST = 50  # corrections
 _CLOSE = 1e-13  # of the extent of a state, for the last one
 _RANK = 1e-10  # of the largest singular value
@@ -331,35 +332,45 @@ class SteadyMotion:
 
 def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> SteadyMotion:
     """Return the steady motion near a state: each correction is the shortest one of the states that matter."""
-    where, state = "equilibria(configuration=...)", (configuration, body_velocity)
+    state, is_rest = (configuration, body_velocity), body_velocity is None or not np.any(body_velocity)
     is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
     flow: Any = system.system if is_map else system  # the map rests where the flow does
     fastest = 0.0
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", flow, *state)
-        if not np.isfinite(local.slope[0]).all():
-            got = f"none at {local.state.tolist()}"
-            raise error(where, "have a finite linearization", got, "Guess closer to an equilibrium.")
-        equations = reduced(local)
-        if getattr(flow, "is_driven", False) and flow.dimension in equations.states:
-            remedy = "Prescribed motions and forces of the time drive it: leave them out."
-            raise error(where, "be near a steady motion", "equations of the time", remedy)
-        is_rest = body_velocity is None or not np.any(body_velocity)
-        matrix, defect = _balance(local._replace(frame=None) if is_rest else local, equations)
-        is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
-        change = equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect))
+        equations = _equations_of(flow, local)
+        change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
+        state = beside(-change[: local.places], -change[local.places :])
         speed = np.abs(local.state / equations.units)[local.places :].max(initial=0.0)
         fastest = max(fastest, speed)
-        state = beside(-change[: local.places], -change[local.places :])
         if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
             if speed < _AT_REST * fastest and not is_rest:
                 remedy = "Guess closer to one, or leave body_velocity out."
-                raise error(where, "be near a steady motion", "one from which corrections lead to rest", remedy)
+                raise error(_NEAR, "be near a steady motion", "one from which corrections lead to rest", remedy)
             return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
-    raise error(where, "be near a steady motion", got, "Guess closer to one.")
+    raise error(_NEAR, "be near a steady motion", got, "Guess closer to one.")
+
+
+def _equations_of(flow: Any, local: Local) -> Reduced:
+    """Return the equations beside a state, refused where they are not finite or depend on the time."""
+    if not np.isfinite(local.slope[0]).all():
+        got = f"none at {local.state.tolist()}"
+        raise error(_NEAR, "have a finite linearization", got, "Guess closer to an equilibrium.")
+    equations = reduced(local)
+    if getattr(flow, "is_driven", False) and flow.dimension in equations.states:
+        remedy = "Prescribed motions and forces of the time drive it: leave them out."
+        raise error(_NEAR, "be near a steady motion", "equations of the time", remedy)
+    return equations
+
+
+def _correction(local: Local, equations: Reduced) -> tuple[Float[np.ndarray, "m"], Float[np.ndarray, "m"]]:
+    """Return a correction of all numbers of a state, and their units."""
+    matrix, defect = _balance(local, equations)
+    is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
+    return equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect)), units
 
 
 def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:

@@ -186,10 +186,18 @@ def _quotient(size: int, chunk: int) -> int:
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
 
 
+def _another_schema(where: str, schema: int, number: Any, versions: Any) -> ValueError:
+    """Return the error of a store that another version wrote."""
+    got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
+    if isinstance(number, int) and number < schema:
+        got += ", of before 0.3.0, from which on later versions read stores"
+        remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
+    return error(where, f"have schema {schema}, the one that this version reads", got, remedy)
+
+
 def read_attributes(path: str | Path, format_name: str = FORMAT, where: str | None = None) -> dict[str, Any]:
     """Return the attributes of a store, after checking that they are of that format, in the schema that is read."""
     where = where or (WHERE if format_name == FORMAT else "load_sweep(store=...)")
-    schema = SCHEMAS[format_name]
     check_assertions(where)
     kind = f"be a store of {_KINDS[format_name]}"
     if not Path(path).exists():
@@ -202,12 +210,7 @@ def read_attributes(path: str | Path, format_name: str = FORMAT, where: str | No
         kind_of_store = _KINDS.get(str(attributes.get("format")))
         got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
-    if attributes.get("schema") != schema:
-        number, versions = attributes.get("schema"), attributes.get("versions")
-        got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
-        if isinstance(number, int) and number < schema:
-            got += ", of before 0.3.0, from which on later versions read stores"
-            remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
-        raise error(where, f"have schema {schema}, the one that this version reads", got, remedy)
+    if attributes.get("schema") != SCHEMAS[format_name]:
+        raise _another_schema(where, SCHEMAS[format_name], attributes.get("schema"), attributes.get("versions"))
     check_metadata(where, str(path), attributes, OrbitMetadata if format_name == FORMAT else SweepMetadata)
     return attributes

@@ -371,7 +371,7 @@ test_what_has_no_values_is_refused = refusals(
     (lambda: nh.displacements_over(nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1), [0.1, 0.2]), _KNOWN),
     (lambda: nh.displacements_over(nh.discretize(_SLEIGH, 0.1, "logarithmic"), [0.1, 0.2]), _KNOWN),
     (lambda: nh.displacements_over(nh.discretize(_SLEIGH, 0.1, constraint="naive"), [0.1, 0.2]), _KNOWN),
-    (lambda: nh.branches(_sleigh(0.5)), r"must be given momentum or displacement\. Got none"),
+    (lambda: nh.branches(_sleigh(0.5)), r"must be given exactly one of momentum, displacement\. Got none"),
     (lambda: nh.fold_distance(_sleigh(0.5), nh.SE(2).exp(np.array([0.1, 0.2, 0.3]))), _OFF),
     (lambda: nh.branches(_sleigh(0.5), displacement=_SPURIOUS), _OFF),
 )

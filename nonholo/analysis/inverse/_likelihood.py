@@ -240,10 +240,7 @@ class Search(NamedTuple):
 
     def settle(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
-        is_known, kinds = np.isfinite(self.levels), self.problem.kinds
-        columns = [self.problem.columns(kind, kinds[kind]) for kind in self.problem.there]
-        least = np.array([_EXACT * np.abs(np.concatenate(each)).max() or _EXACT for each in columns])
-        spread = np.array([np.concatenate([x - x.mean() for x in each]).std() for each in columns])
+        is_known, (least, spread) = np.isfinite(self.levels), self._extents()
         noise, tolerance = np.where(is_known, self.levels, np.maximum(spread, least)), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
@@ -255,6 +252,12 @@ class Search(NamedTuple):
                 return Solution(point, noise, now, now.cosine < _MISSED or bool((noise <= least).all()))
             tolerance = _FINE if is_settled else _COARSE
         return Solution(point, noise, now, False)
+
+    def _extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the least noise of each kind, below which it is rounding, and the spread of what is measured."""
+        columns = [self.problem.columns(kind, self.problem.kinds[kind]) for kind in self.problem.there]
+        least = [_EXACT * np.abs(np.concatenate(each)).max() or _EXACT for each in columns]
+        return np.array(least), np.array([np.concatenate([x - x.mean() for x in each]).std() for each in columns])
 
     def least(self, point: np.ndarray, noise: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the point where the loss is least under noise levels."""

@@ -187,8 +187,8 @@ def least_squares_at(
     lengths = np.linalg.norm(slope(begin), axis=0)
     unit = np.exp2(-np.round(np.log2(np.where(np.isfinite(lengths) & (lengths > 0), lengths, 1.0))))  # no rounding
     options: Any = {"x_scale": "jac", "max_nfev": most, **dict.fromkeys(("ftol", "xtol", "gtol"), tolerance)}
-    functions = (lambda x: rows(x * unit)), begin / unit, (lambda x: slope(x * unit) * unit)
-    return least_squares(*functions, tuple(end / unit for end in ends), **options).x * unit
+    options |= {"jac": lambda x: slope(x * unit) * unit, "bounds": tuple(end / unit for end in ends)}
+    return least_squares(lambda x: rows(x * unit), begin / unit, **options).x * unit
 
 
 def _along(slope: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:

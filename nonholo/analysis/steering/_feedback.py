@@ -194,7 +194,7 @@ def tracking_feedback(
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     track.check(where, len(table))
-    rest = {} if velocities_of(start) else {track.velocities[0]: np.zeros(k)}
+    rest: dict[str, Any] = {} if velocities_of(start) else {track.velocities[0]: np.zeros(k)}
     reference = roll(where, discrete, **start, **rest, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")

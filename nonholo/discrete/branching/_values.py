@@ -23,7 +23,7 @@ from nonholo.discrete.branching._equations import Equations, has_frame
 from nonholo.discrete.branching._forces import Node, node_of
 from nonholo.discrete.branching._roots import Root, place, roots_of
 from nonholo.discrete.branching._sections import AnyFrame, frame_for
-from nonholo.systems import AbstractLLSystem, NormalForm
+from nonholo.systems import AbstractLLSystem, NormalForm, one_start
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -207,6 +207,7 @@ def branches_of(
     equations, zeros, X = roots
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
     multiplicity = np.array([root.multiplicity for root in zeros], dtype=np.int64)
+    code, increment = principal or principal_increment(discrete, canonical)
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
@@ -215,7 +216,7 @@ def branches_of(
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, frame, *(principal or principal_increment(discrete, canonical)), X, is_real),
+        principal=_index_of(discrete, frame, code, increment, X, is_real),
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
@@ -409,9 +410,7 @@ def branches(
     node = _node("branches", discrete, certify, configuration, step)
     frame = frame_for("branches", discrete) if node is None else node.frame
     flags("branches", certify=certify)
-    if (momentum is None) == (displacement is None):
-        got = "none" if momentum is None else "both"
-        raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
+    one_start("branches", momentum=momentum, displacement=displacement)
     where = "branches(momentum=...)"
     if displacement is not None:
         free = discrete if node is None else node.free
