@@ -377,9 +377,8 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         return _with_names(orbit, rows) | {"time": time}
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
-    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | pose_variables(
-        orbit, before
-    )
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)}
+    states |= pose_variables(orbit, before)
     for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | states | compact
@@ -403,7 +402,7 @@ def variables_of(orbit: Any) -> dict[str, Variable]:
 
 
 def _with_names(orbit: Any, variables: dict[str, Variable]) -> dict[str, Variable]:
-    """Return variables but for empty rows, with attributes for their times and for names along their last axis."""
+    """Return variables that are not empty, with attributes for their times and for names along their last axis."""
     names = _PARTS | ({"coordinate": list(orbit.coordinates)} if orbit.coordinates else {})
     whole = {name: variable for name, variable in variables.items() if 0 not in variable.shape[1:]}
     for name, (dims, _, attrs) in whole.items():

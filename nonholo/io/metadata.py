@@ -183,6 +183,7 @@ def _quotient(size: int, chunk: int) -> int:
     return -(-size // chunk)
 
 
+_READERS = {FORMAT: WHERE, SWEEP_FORMAT: "load_sweep(store=...)"}
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
 
 
@@ -197,7 +198,7 @@ def _another_schema(where: str, schema: int, number: Any, versions: Any) -> Valu
 
 def read_attributes(path: str | Path, format_name: str = FORMAT, where: str | None = None) -> dict[str, Any]:
     """Return the attributes of a store, after checking that they are of that format, in the schema that is read."""
-    where = where or (WHERE if format_name == FORMAT else "load_sweep(store=...)")
+    where = where or _READERS[format_name]
     check_assertions(where)
     kind = f"be a store of {_KINDS[format_name]}"
     if not Path(path).exists():

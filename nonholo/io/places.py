@@ -231,6 +231,11 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
         raise _exists(path, f"Choose another path, or resume what is there: {ways}.", new)
     if not overwrite:
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
+    _check_replaceable(path)
+
+
+def _check_replaceable(path: str | Path) -> None:
+    """Refuse what is no store of an orbit, holds what is no part of one, or is being written."""
     if format_of(path) != FORMAT:
         raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
     files = (file.relative_to(path).as_posix() for file in Path(path).rglob("*") if not file.is_dir())
