@@ -207,6 +207,7 @@ def branches_of(
     equations, zeros, X = roots
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
     multiplicity = np.array([root.multiplicity for root in zeros], dtype=np.int64)
+    code, increment = principal or principal_increment(discrete, canonical)
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
@@ -215,7 +216,7 @@ def branches_of(
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, frame, *(principal or principal_increment(discrete, canonical)), X, is_real),
+        principal=_index_of(discrete, frame, code, increment, X, is_real),
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
