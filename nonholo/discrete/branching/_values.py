@@ -413,8 +413,7 @@ def branches(
     one_start("branches", momentum=momentum, displacement=displacement)
     where = "branches(momentum=...)"
     if displacement is not None:
-        free = discrete if node is None else node.free
-        W, _ = checked_point("branches(displacement=...)", free, frame, displacement)
+        W, _ = checked_point("branches(displacement=...)", discrete, frame, displacement)
         X = W - discrete.system.group.identity
     elif node is None and shape_of(momentum) != (discrete.system.rank,):
         X = _inverse(where, discrete, frame, momentum)
