@@ -217,7 +217,7 @@ class Search(NamedTuple):
         is_known, kinds = np.isfinite(self.levels), self.problem.kinds
         columns = [self.problem.columns(kind, kinds[kind]) for kind in self.problem.there]
         least = np.array([_EXACT * np.abs(np.concatenate(each)).max() or _EXACT for each in columns])
-        spread = np.array([np.concatenate([x - x.mean() for x in each]).std() for each in columns])
+        spread = np.array([_spread(each) for each in columns])
         noise, tolerance = np.where(is_known, self.levels, np.maximum(spread, least)), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
@@ -294,6 +294,11 @@ class Search(NamedTuple):
             return typical > _LOST * level
         most = 1.0 if kind == "turn" else float(np.abs(self.problem.kinds[kind][there]).max())
         return (typical > _LOST * step and typical > _PART * most) or (kind == "turn" and typical > most)
+
+
+def _spread(columns: list[np.ndarray]) -> float:
+    """Return the deviation of numbers from the means of their columns."""
+    return float(np.concatenate([each - each.mean() for each in columns]).std())
 
 
 def _deviation(parts: list[np.ndarray]) -> float:
