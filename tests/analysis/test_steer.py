@@ -130,7 +130,7 @@ def test_torque_alone_does_not_stop_a_sleigh() -> None:
     start = {"restricted_velocity": (0.0, 0.3)}
     found = nh.steer(SLEIGH, start, REST, steps=6, bounds=((-5.0, 0.0), (5.0, 0.0)))
     assert not found.converged
-    assert found.missed > 0.2
+    assert found.missed > 0.1  # in units of the body and the 0.6 of the motion
 
 
 # What cannot be steered is named before any work.
