@@ -171,7 +171,7 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "conserved_momenta": (lambda: nh.conserved_momenta(WIDEST), "must have at most 100000 components"),
     "consistency_defect": (lambda: nh.consistency_defect(BROAD), "must have at most 100000 components"),
     "linearize": (lambda: nh.linearize(BROAD), "must have at most 100000 components"),
-    "lyapunov_exponents": (lambda: nh.lyapunov_exponents(_wide_orbit()), "fit into memory"),
+    "lyapunov_exponents": (lambda: nh.lyapunov_exponents(_wide_orbit()), "have at most 100000 components"),
     "lyapunov_function": (lambda: nh.lyapunov_function(WIDEST), "fit into memory"),
     "invariant_measure": (lambda: nh.invariant_measure(WIDEST), "fit into memory"),
     "equilibria": (lambda: nh.equilibria(WIDEST), "fit into memory"),

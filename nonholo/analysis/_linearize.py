@@ -335,23 +335,29 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
     state, is_rest = (configuration, body_velocity), body_velocity is None or not np.any(body_velocity)
     is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
     flow: Any = system.system if is_map else system  # the map rests where the flow does
-    fastest = 0.0
+    begin: Any = None
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", flow, *state)
         equations = _equations_of(flow, local)
         change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
         state = beside(-change[: local.places], -change[local.places :])
-        speed = np.abs(local.state / equations.units)[local.places :].max(initial=0.0)
-        fastest = max(fastest, speed)
+        velocity = local.state[local.places :]
+        begin = begin or (velocity, equations.units[local.places :])
         if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
-            if speed < _AT_REST * fastest and not is_rest:
+            if _has_stopped(velocity, *begin):
                 remedy = "Guess closer to one, or leave body_velocity out."
                 raise error(_NEAR, "be near a steady motion", "one from which corrections lead to rest", remedy)
             return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(_NEAR, "be near a steady motion", got, "Guess closer to one.")
+
+
+def _has_stopped(velocity: np.ndarray, first: np.ndarray, units: np.ndarray) -> bool:
+    """Return whether nothing is left of a velocity, in units of where it was."""
+    speed, before = (np.abs(v / units).max(initial=0.0) for v in (velocity, first))
+    return bool(speed < _AT_REST * before)
 
 
 def _equations_of(flow: Any, local: Local) -> Reduced:

@@ -336,6 +336,11 @@ def function(where: str, value: Any, *arguments: str) -> None:
 
 def takes(function: Callable[..., Any], count: int) -> bool:
     """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    own = function.__call__  # which is read wrongly of an object where it is static
+    return _binds(function, count) or (inspect.isfunction(own) and _binds(own, count))
+
+
+def _binds(function: Callable[..., Any], count: int) -> bool:
     try:
         inspect.signature(function).bind(*range(count))
     except TypeError:

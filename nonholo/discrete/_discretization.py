@@ -58,9 +58,13 @@ class Discretization(Scheme, AbstractMotion):
         """The decoder of the displacements of its single steps."""
         return displacement_decoder(self, self.decoder)
 
+    @functools.cached_property
+    def _steppers(self) -> tuple[AbstractBodyStepper, ...]:
+        return tuple(self.route.stepper(self, with_poses=with_poses) for with_poses in (False, True))
+
     def stepper(self, *, with_poses: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
-        return self.route.stepper(self, with_poses=bool(with_poses))
+        return self._steppers[bool(with_poses)]
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a run whose rows have poses or not: one may be large."""
