@@ -18,6 +18,7 @@ HOMES = {
     "Branches": "nonholo.discrete",
     "Gaps": "nonholo.analysis.steering._shooting",
     "REDUCTIONS": "nonholo.ensembles",
+    "ROWS": "nonholo.lagrange_dalembert.functions",
     "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",

@@ -10,18 +10,19 @@ relative error of 1e-10, and how far each ends from diffrax with 1e-13.
 import functools
 import statistics
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from _command import options as command
 from _command import small
-from _inside import advance, flow_by_diffrax, flow_by_series, in_double_precision, loop_in_jax
+from _inside import ROWS, advance, flow_by_diffrax, flow_by_series, in_double_precision, loop_in_jax
 
 import nonholo as nh
 
 NAMES = ("particle", "rolling_disk", "knife_edge_on_incline", "snakeboard", "two_wheeled_robot", "non_reversible")
 NAMES += ("roller_racer", "driven_sleigh", "chaotic_quartic_oscillator")
-STEP = 0.002
+STEP, SIGN = 0.002, np.float64(1)
 
 
 def main() -> None:
@@ -34,36 +35,41 @@ def main() -> None:
     print("| --- | ---: | ---: | ---: | ---: | ---: |")
     for name in small(NAMES, NAMES[:2]):
         ready = getattr(nh.examples, name)()
-        system, h, counts = ready.system, np.float64(STEP), (np.int64(1), np.int64(options.steps))
+        system, h = ready.system, np.float64(STEP)
         begin = time.process_time()
         how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
         orbit = nh.simulate(nh.discretize(system, STEP), **how, steps=10)
         first = time.process_time() - begin
         q = np.append(ready.configuration, 0.0) if system.is_driven else ready.configuration
-        state, sign = (q, orbit.body_velocity[0], orbit.body_velocity[0]), np.float64(1)
-
-        def by_jax(*arguments: Any, system: Any = system, h: Any = h) -> Any:
-            return in_double_precision(loop_in_jax, system, h, *arguments)
-
-        def compiled(
-            state: Any, sign: Any, rows: Any, every: Any, system: Any = system, h: Any = h, by_jax: Any = by_jax
-        ) -> Any:
-            widths = len(state[0]), len(state[1]), system.constraints
-            return advance(by_jax, system, h, state, sign, int(every), tuple(np.empty((rows, w)) for w in widths))
-
+        velocity = orbit.body_velocity[0]
+        state, widths = (q, velocity, velocity), (len(q), len(velocity), system.constraints)
+        loop = functools.partial(in_double_precision, loop_in_jax, system, h)
+        table = tuple(np.empty((1, width)) for width in widths)
+        by_jax = functools.partial(run_by_jax, loop, state, options.steps)
+        compiled = functools.partial(advance, loop, system, h, state, SIGN, options.steps, table)
         times: list[list[float]] = [[], []]
-        ends = [run(state, sign, *counts)[1][0] for run in (by_jax, compiled)]
+        ends = [run()[1][0] for run in (by_jax, compiled)]
         assert np.abs(ends[0] - ends[1]).max() <= 1e-6 * np.abs(ends[0]).max()
         for _ in range(options.rounds):
             for run, spent in zip((by_jax, compiled), times, strict=True):
                 begin = time.process_time()
-                run(state, sign, *counts)
+                run()
                 spent.append((time.process_time() - begin) / options.steps * 1e6)
         jax, ours = map(statistics.median, times)
         ratio = statistics.median(a / b for a, b in zip(*times, strict=True))
         cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {first:.2f}"
         print(f"| {name} | {system.dimension} | {cells} |", flush=True)
     flows(options.rounds)
+
+
+def run_by_jax(loop: Callable[..., Any], state: Any, steps: int) -> tuple[int, Any]:
+    """Take steps by the loop in JAX, which takes a block of them at once; return how many, and the state there."""
+    count = 0
+    while count < steps:
+        good, state, code, _ = loop(state, SIGN, np.int64(min(ROWS, steps - count)))
+        assert code == 0
+        count += int(good)
+    return count, state
 
 
 def flows(rounds: int) -> None:

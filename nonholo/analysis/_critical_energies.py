@@ -151,7 +151,7 @@ def _top_form(where: str, discrete: Any) -> NormalForm:
     instance(where, discrete, Discretization, "be a discretized Suslov top", remedy)
     form = discrete.system.normal_form
     if form is None or form.is_sleigh:
-        if form is not None:
+        if form is not None and form.is_planar:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
         raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
     refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")

@@ -101,7 +101,8 @@ def equilibria(
     if configuration is not None or body_velocity is not None:
         refuse_given("equilibria", "be left out beside a configuration", "Pass one of them.", energy=(energy, 1.0))
         return steady_motion(system, configuration, body_velocity)
-    body, step = _body_and_steps("equilibria(system=...)", system)
+    remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
+    body, step = _body_and_steps("equilibria(system=...)", system, remedy)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
     family = body.equilibria()
     if body.normal_form is None and step is not None and len(family.subspace) < body.rank:
@@ -158,9 +159,8 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
     return float(discrete.time_step) * weights(discrete.order)
 
 
-def _body_and_steps(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
+def _body_and_steps(where: str, value: Any, remedy: str) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
     """Return the body and the time steps of the substeps, one for order 2."""
-    remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
     body = value.system if isinstance(value, Discretization) else value
     refuse_forces(where, body)
     refuse_fixed_in_space(where, body, remedy)
@@ -216,7 +216,7 @@ class LyapunovFunction:
         return -p @ (self.attracting if size == dim else self.attracting @ np.linalg.pinv(self.subspace))
 
 
-def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
+def lyapunov_function(system: AbstractLLSystem | Discretization) -> LyapunovFunction:
     r"""Return the function of the momentum that falls along every motion that is not an equilibrium.
 
     $L = c\cdot r$ for a top, $L = -\mathrm{sgn}(a_1)\,p_1$ for a sleigh, $L = -c\cdot\pi$ for a sleigh with $a_1 = 0$.
@@ -230,10 +230,11 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
     Reference: [fedorov-zenkov-2004], sections 6 and 7, for n = 3 and SE(2).
 
     Args:
-        system: A top, a sleigh, or a system all of whose velocities stay constant.
+        system: A top, a sleigh, or a system all of whose velocities stay constant; or its discretization with "matrix"
+            and "skew".
 
     Raises:
-        ValueError: Another system.
+        ValueError: Another system or discretization.
 
     Example:
         >>> sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
@@ -241,15 +242,14 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
         >>> bool(np.all(np.diff(lyapunov_function(sleigh)(orbit.momentum)) < 0))
         True
     """
-    refuse_forces("lyapunov_function(system=...)", system)
-    remedy = "Pass a SuslovTop, a sleigh, or another left-invariant system."
-    refuse_fixed_in_space("lyapunov_function(system=...)", system, remedy)
-    family = system.equilibria()
-    if system.normal_form is None and len(family.subspace) < system.rank:
+    where, remedy = "lyapunov_function(system=...)", "Pass a SuslovTop, a sleigh, or the discretization of one."
+    body, _ = _body_and_steps(where, system, remedy)
+    family = body.equilibria()
+    if body.normal_form is None and len(family.subspace) < body.rank:
         remedy = "Of other systems no such function of the discrete map is known."
-        raise error("lyapunov_function(system=...)", "be a top or a sleigh", type(system).__name__, remedy)
-    attracting = np.zeros(system.group.dim) if family.attracting is None else family.attracting
-    return LyapunovFunction(attracting, system.constraint_subspace)
+        raise error(where, "be a top or a sleigh", type(body).__name__, remedy)
+    attracting = np.zeros(body.group.dim) if family.attracting is None else family.attracting
+    return LyapunovFunction(attracting, body.constraint_subspace)
 
 
 @result
@@ -382,7 +382,7 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
     refuse_forces("invariant_measure(motion=...)", system)
     if getattr(system, "normal_form", None) is None:
         remedy = "Pass a SuslovTop, a sleigh, or a discretization of one."
-        raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)
+        raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(system).__name__, remedy)
     spectrum = equilibria(motion, energy)
     if spectrum.attracting is None:
         return InvariantMeasure(motion, True, None, None)

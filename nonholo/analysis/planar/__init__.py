@@ -43,7 +43,7 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
     variety = planar_variety(discrete.system)
     if variety is None:
         remedy = "For others sample `discrete_legendre`."
-        raise error(where, "be of a top with n = 3 or of a sleigh", shown(discrete.system), remedy)
+        raise error(where, "be of a top with n = 3 or of a sleigh in the plane", shown(discrete.system), remedy)
     check_conserves_energy(where, discrete, "keep energy", "Use difference='matrix' and constraint='skew'.")
     return discrete, variety
 

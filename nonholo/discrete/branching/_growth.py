@@ -175,7 +175,8 @@ def _sleigh(where: str, discrete: Discretization) -> tuple[float, float, float, 
     form = as_discretization(where, discrete).system.normal_form
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`; `branch_tree` counts the images of tops."
     if form is None or not form.is_planar or form.arm == 0:  # as of tops
-        got = f"{type(discrete.system).__name__}{', a = 0' if form is not None and form.is_sleigh else ''}"
+        is_balanced = form is not None and form.is_planar and form.is_sleigh
+        got = f"{type(discrete.system).__name__}{', a = 0' * is_balanced}"
         raise error(where, "be a discretized plane sleigh with a != 0", got, remedy)
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
