@@ -175,7 +175,8 @@ def _refuse_singular(where: str, system: LLSystem) -> None:
         return
     terms, units = rows @ np.abs(system.inertia_operator) @ rows.T, np.ones(len(rows))
     for _ in range(8):  # rows may mix lengths and angles
-        units = units * np.sqrt((terms / units / units[:, None]).max(axis=1, initial=np.finfo(float).tiny))
+        sizes = (terms / units / units[:, None]).max(axis=1, initial=0.0)
+        units = units * np.sqrt(np.where(sizes > 0, sizes, 1.0))
     if not np.abs(np.linalg.eigvalsh(inertia / units / units[:, None])).min() > _SINGULAR:
         got = f"eigenvalues {np.linalg.eigvalsh(inertia).tolist()}"
         remedy = "Every admissible velocity needs a separate momentum along the constraint."
