@@ -6,7 +6,6 @@ numbers must be those of a run that nobody disturbed, to the bit, no file may be
 """
 
 # ruff: noqa: E402
-import argparse
 import hashlib
 import json
 import os
@@ -28,6 +27,7 @@ compilers.use_caches()
 
 import numpy as np
 from ensembles import faults
+from fuzz.figures import options
 
 import nonholo as nh
 from nonholo.io.places import owner_of
@@ -107,9 +107,8 @@ def in_a_child(do: Callable[..., Any], *given: Any) -> str:
 
 def kill_in_forks(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
     """Kill a run, perhaps its resume too; return how many were killed before they were over."""
-    kills = sum(
-        _killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(1 + (chance.random() < _AGAIN))
-    )
+    times = 1 + (chance.random() < _AGAIN)
+    kills = sum(_killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(times))
     in_a_child(go_on, family, name, store)
     return kills
 
@@ -197,20 +196,14 @@ def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) 
     if not can_restart():
         return {**found, "restarts": "skipped: process namespaces may not be made here"}
     halves = (restarts + 1) // 2, restarts // 2
-    restarted = {
-        f"{family}, restarted": figures(family, half, seed, True) for family, half in zip(FAMILIES, halves, strict=True)
-    }
-    return found | restarted
+    shares = zip(FAMILIES, halves, strict=True)
+    return found | {f"{family}, restarted": figures(family, half, seed, True) for family, half in shares}
 
 
 def main() -> int:
     """Kill, resume, compare, print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=20, help="of orbits, and of sweeps")
-    parser.add_argument("--restarts", type=int, default=10, help="in namespaces that end")
-    parser.add_argument("--seed", type=int, default=0)
+    parser = options(__doc__, trials=20, restarts=10)
     parser.add_argument("--only", help="the name of one run or sweep")
-    parser.add_argument("--json", type=Path, help="where the figures are written")
     parser.add_argument("--go-on", nargs=3, metavar=("FAMILY", "NAME", "STORE"), help="what is killed")
     given = parser.parse_args()
     if given.go_on:
