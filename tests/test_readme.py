@@ -1,4 +1,4 @@
-"""The README says what is so: its commands are the ones CI runs, its example runs, its links lead somewhere."""
+"""README and pages say what is so: commands are those of CI, the example runs, links and references lead somewhere."""
 
 import json
 import re
@@ -81,3 +81,22 @@ def test_figures_of_other_fuzzers_stay(tmp_path: Path) -> None:
     assert merged(file, {"kills": {"a": 1}}) == {"kills": {"a": 1}}
     file.write_text(json.dumps({"steps": {"b": 1}, "api": {"c": 1}}))
     assert list(merged(file, {"api": {"c": 2}}).items()) == [("api", {"c": 2}), ("steps", {"b": 1})]
+
+
+LIST = DOCS / "references.md"
+KEY = r"\[([a-z]+(?:-[a-z]+)*-(?:19|20)\d\d)\]"
+
+
+def cited() -> set[str]:
+    """Return the keys in brackets in the documentation, the package and the benchmarks."""
+    places = [*ROOT.glob("docs/**/*.md"), *ROOT.glob("nonholo/**/*.py"), *ROOT.glob("benchmarks/**/*.py")]
+    return {key for place in places if place != LIST for key in re.findall(KEY, place.read_text("utf-8"))}
+
+
+def test_every_reference_is_listed_once_and_cited() -> None:
+    """Keys are listed in order, once, and cited; the last column says how much of the text was at hand."""
+    rows = re.findall(rf"^\| {KEY} \|.*\| (.*) \|$", LIST.read_text("utf-8"), re.MULTILINE)
+    listed = [key for key, _ in rows]
+    assert listed == sorted(set(listed))
+    assert cited() == set(listed)
+    assert all(re.match("text|abstract|not read|not recorded", read) for _, read in rows)

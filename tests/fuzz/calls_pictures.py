@@ -9,15 +9,11 @@ from fuzz.calls import Call, call, closed
 from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
 from fuzz.calls_runs import moving
 from fuzz.kinds import Argument, anything, array, count, flag, function, number, path, positive, text, thing
+from fuzz.marker import turned
 
 import nonholo as nh
 
 mpl.use("agg")
-
-
-def turned(states: nh.Orbit) -> np.ndarray:
-    """Zero where the sleigh looks along the first axis, or back."""
-    return np.sin(states.heading)
 
 
 def calls() -> list[Call]:

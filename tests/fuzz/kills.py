@@ -18,7 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import compilers
@@ -28,32 +28,24 @@ compilers.use_caches()
 import numpy as np
 from ensembles import faults
 from fuzz.figures import options
+from fuzz.marker import turned
 
 import nonholo as nh
 from nonholo.io.places import owner_of
 
-
-def east(orbit: nh.Orbit) -> np.ndarray:
-    """Zero where the sleigh looks along the first axis, or back."""
-    return np.sin(orbit.heading)
+Run: TypeAlias = tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]
 
 
-RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]] = {
-    "sleigh": (
-        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3),
-        {"body_velocity": (1.0, 0.3, 0.0), "steps": 60_000, "save_every": 2},
-        None,
-    ),
-    "tumbling body": (
-        nh.discretize(nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), 0.1),
-        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 50_000, "save_every": 2},
-        None,
-    ),
-    "events": (
-        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1),
-        {"body_velocity": (4.0, 1.0, 0.0), "steps": 30_000, "save_every": 5},
-        [nh.Event(east, direction=1)],
-    ),
+def _run(system: Any, time_step: float, *velocity: float, steps: int, save_every: int, events: Any = None) -> Run:
+    run = {"body_velocity": velocity, "steps": steps, "save_every": save_every}
+    return nh.discretize(system, time_step), run, events
+
+
+BODY, EAST = nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), nh.Event(turned, direction=1)
+RUNS: dict[str, Run] = {
+    "sleigh": _run(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3, 1.0, 0.3, 0.0, steps=60_000, save_every=2),
+    "tumbling body": _run(BODY, 0.1, 1.0, -0.4, 0.9, 0.8, -0.7, 0.9, steps=50_000, save_every=2),
+    "events": _run(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1, 4.0, 1.0, 0.0, steps=30_000, save_every=5, events=[EAST]),
 }
 SWEEPS: dict[str, Any] = {
     "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, rng=3), 8),
