@@ -195,9 +195,7 @@ def room_of(file: str) -> str | None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Print the commands of the profiles that a change concerns.")
-    parser.add_argument(
-        "--all", action="store_true", help="every case of all profiles but the two that take half an hour each"
-    )
+    parser.add_argument("--all", action="store_true", help="every case of all profiles but those of half an hour")
     parser.add_argument("--soak", action="store_true", help="of all profiles")
     parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
     given = parser.parse_args()

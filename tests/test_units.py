@@ -167,26 +167,20 @@ def test_a_fold_is_met_at_the_same_place_on_the_way_to_any_momentum(name: str) -
     np.testing.assert_allclose(folds, np.tile(folds[0], (3, 1)), rtol=0, atol=1e-4)  # the root of the shortest step
 
 
-INERTIAS = {
-    "smallest": np.array([[1.24, 0.01, 0.96], [0.01, 1.07, 0.26], [0.96, 0.26, 1.84]]),
-    "largest": np.array([[1.26, -0.28, -0.46], [-0.28, 1.33, -0.59], [-0.46, -0.59, 1.13]]),
+OBLIQUE = np.array([[1.24, 0.01, 0.96], [0.01, 1.07, 0.26], [0.96, 0.26, 1.84]])
+TILTED = np.array([[1.26, -0.28, -0.46], [-0.28, 1.33, -0.59], [-0.46, -0.59, 1.13]])
+BRANCHES: dict[str, Any] = {
+    "smallest": (0.85, [0.05, 1.65, 0.22], OBLIQUE, [-0.93, -1.11, 0.56]),
+    "largest": (1.18, [-0.09, 0.2, -0.44], TILTED, [-0.4, -0.78, 1.06]),
 }
 
 
-@pytest.mark.parametrize(
-    ("branch", "mass", "center", "velocity"),
-    [
-        ("smallest", 0.85, [0.05, 1.65, 0.22], [-0.93, -1.11, 0.56]),
-        ("largest", 1.18, [-0.09, 0.2, -0.44], [-0.4, -0.78, 1.06]),
-    ],
-)
-def test_the_smallest_momentum_does_not_depend_on_the_unit_of_length(
-    branch: str, mass: float, center: list[float], velocity: list[float]
-) -> None:
+@pytest.mark.parametrize("branch", BRANCHES)
+def test_the_smallest_momentum_does_not_depend_on_the_unit_of_length(branch: str) -> None:
     """Angular and linear momenta are compared in the unit of the body, so that a rule takes the same values."""
-    turns = []
+    (mass, center, inertia, velocity), turns = BRANCHES[branch], []
     for length in (1.0, 1e-3, 1e3):
-        sleigh = nh.MultidimensionalSleigh(mass, np.array(center) * length, INERTIAS[branch] * length**2)
+        sleigh = nh.MultidimensionalSleigh(mass, np.array(center) * length, inertia * length**2)
         start = np.array(velocity) * [1.0, 1.0, length]
         orbit = nh.simulate(nh.discretize(sleigh, 0.5), restricted_velocity=start, steps=3, branch=branch)
         turns.append(orbit.displacement[:, :3, :3])
