@@ -106,7 +106,10 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "sweep": (lambda: nh.sweep(_sums, _random(10**15), "a.zarr"), "fit on the disk. Got about 21 PB"),
     "sweep, block": (lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12), "sweep(block=...)"),
     "sweep, files": (lambda: nh.sweep(_sums, _random(10**11), "a.zarr", block=1), DISK),
-    "EnsembleTask": (lambda: nh.sweep(nh.EnsembleTask(SLEIGH, 10, **START), _random(10**15, "a"), "a.zarr"), DISK),
+    "EnsembleTask": (
+        lambda: nh.sweep(nh.EnsembleTask(SLEIGH, steps=10, **START), _random(10**15, "a"), "a.zarr"),
+        DISK,
+    ),
     "Grid": (lambda: nh.sweep(_sums, nh.Grid({name: np.ones(10**4) for name in "xabc"}), "a.zarr"), DISK),
     "RandomDesign": (lambda: nh.sweep(_sums, _random(10**15), "b.zarr"), DISK),
     "dataset": (lambda: nh.dataset("top", "a", orbits=10**15), DISK),

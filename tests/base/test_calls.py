@@ -92,7 +92,7 @@ def _well(g: np.ndarray) -> float:
     [
         (_run, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.3", 3),
         (_flow, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.2", 1),
-        (_run, _well, None, r"`Forced\(potential=...\)` must be finite. Got nan from `_well`", 1),
+        (_run, _well, None, r"`Forced\(potential=...\)` must be finite. Got nan from `_well`", 0),
     ],
     ids=["force in a run", "force in a flow", "potential in a run"],
 )

@@ -80,7 +80,7 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
     forces = {"weight": vector(WEIGHT, space), "spring": spring}
     loads = [(point, force) for name, force in forces.items() if name in acting]
     if "friction" in acting:
-        covector -= moving * sympy.Matrix(FRICTION).T
+        covector -= moving * sympy.Matrix(FRICTION.tolist()).T
     if "drive" in acting:
         covector += sympy.Matrix([drive(moving, TIME, sympy.cos)])
     loads += [(frame, vector(covector[:3])), (place, vector(covector[3:]))]
