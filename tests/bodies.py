@@ -54,23 +54,19 @@ def magnet(system: Any) -> nh.Linear:
     return nh.Linear(np.random.default_rng(3).normal(size=(system.group.size,) * 2))
 
 
+def _of_inertias(group: AbstractMatrixGroup, rows: Any, inertias: Any) -> nh.LLSystem:
+    return nh.LLSystem(group, constraint_subspace=rows, inertia_operator=np.diag(inertias))
+
+
 def _others() -> dict[str, AbstractSystem]:
-    rng = np.random.default_rng(31)
+    rng, product = np.random.default_rng(31), nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2))
     return {
         "top on SO(7)": nh.SuslovTop(mass_tensor(nh.SO(7), rng)),
         "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), rng), nh.SE(3)),
-        "Heisenberg": nh.LLSystem(
-            HEISENBERG, constraint_subspace=[[1, 0, 0.25], [0, 1, 0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
-        ),
-        "product": nh.LLSystem(
-            nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2)),
-            constraint_subspace=rng.normal(size=(4, 8)),
-            inertia_operator=np.diag(np.arange(1.0, 9.0)),
-        ),
+        "Heisenberg": _of_inertias(HEISENBERG, [[1, 0, 0.25], [0, 1, 0]], [1.0, 2.0, 3.0]),
+        "product": _of_inertias(product, rng.normal(size=(4, 8)), np.arange(1.0, 9.0)),
         "right-invariant on SE(2)": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), rng), [[1, 0.2, 0], [0, 1, 0.3]]),
-        "nothing moves": nh.LLSystem(
-            nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
-        ),
+        "nothing moves": _of_inertias(nh.SO(3), np.empty((0, 3)), [1.0, 2.0, 2.5]),
     }
 
 

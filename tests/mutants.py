@@ -18,11 +18,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 _PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0")
-_COMPILED = (  # numba's cache does not notice callees in other files, nor the options of callers
-    "nonholo/kernels/",
-    "nonholo/base/numerics/",
-    "nonholo/base/compiled/",
-)
+# numba's cache does not notice callees in other files, nor the options of callers
+_COMPILED = ("nonholo/kernels/", "nonholo/base/numerics/", "nonholo/base/compiled/")
 _LIMIT = 600  # seconds
 _FIRST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 

@@ -95,30 +95,19 @@ EVERY = 8
 """A change runs every eighth case of its profiles, others at another number of commits."""
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
-_DALEMBERT = "nonholo.lagrange_dalembert."
-DOCTESTS = {  # examples that compile for long
-    f"{_DALEMBERT}_orbit.GroupOrbit": "routes",
-    f"{_DALEMBERT}_group_system.GroupLagrangeDAlembert": "routes",
-    f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
-    "nonholo.examples._points.particle": "routes",
-    "nonholo.ensembles._family_task.FamilyTask": "routes",
-    "nonholo.discrete._discretize.consistency_defect": "routes",
-    "nonholo.examples._cars.two_wheeled_robot": "routes",
-    "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
-    "nonholo.analysis.steering._steer.steer": "routes",
-    "nonholo.analysis.locomotion._connection.accessibility": "routes",
-    "nonholo.analysis.locomotion._connection.LocalConnection.body_velocity": "routes",
-    "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate": "routes",
-    "nonholo.analysis.locomotion._connection.local_connection": "routes",
-    "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
-    "nonholo.analysis.locomotion._connection.ShapedBody": "routes",
-    "nonholo.plot.geometry._curvature.curvature": "routes",
-    "nonholo.simulation.traced.rollout": "routes",
-    "nonholo.analysis.inverse._fit.fit": "routes",
-    "nonholo.analysis._linearize.linearize": "routes",
-    "nonholo.examples._rolling.ball_in_bowl": "routes",
-    "nonholo.examples._rolling.tilting_disk": "routes",
+_LONG = {  # examples that compile for long
+    "lagrange_dalembert": "_orbit.GroupOrbit _group_system.GroupLagrangeDAlembert _orbit.CoordinateOrbit",
+    "examples": "_points.particle _cars.two_wheeled_robot _rolling.ball_in_bowl _rolling.tilting_disk",
+    "discrete": "_discretize.consistency_defect",
+    "simulation": "traced.rollout",
+    "ensembles": "_family_task.FamilyTask",
+    "analysis": "_linearize.linearize inverse._fit.fit steering._feedback.tracking_feedback steering._steer.steer",
+    "analysis.locomotion": "_phase.geometric_phase _connection.ShapedBody",
+    "analysis.locomotion._connection": "accessibility local_connection",
+    "analysis.locomotion._connection.LocalConnection": "body_velocity momentum_rate",
+    "plot.geometry": "_curvature.curvature",
 }
+DOCTESTS = {f"nonholo.{room}.{name}": "routes" for room, names in _LONG.items() for name in names.split()}
 
 
 def command(name: str) -> str:
@@ -206,9 +195,7 @@ def room_of(file: str) -> str | None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Print the commands of the profiles that a change concerns.")
-    parser.add_argument(
-        "--all", action="store_true", help="every case of all profiles but the two that take half an hour each"
-    )
+    parser.add_argument("--all", action="store_true", help="every case of all profiles but those of half an hour")
     parser.add_argument("--soak", action="store_true", help="of all profiles")
     parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
     given = parser.parse_args()

@@ -59,8 +59,6 @@ def test_singular_matrices_of_groups_warn() -> None:
         found = boosts.cayley([[2.0], [0.5]])
     assert np.isnan(found[0]).all()
     np.testing.assert_array_equal(found[1], boosts.cayley([0.5]))
-    with pytest.warns(RuntimeWarning):
-        assert np.isnan(nh.SE(3).cayley(np.full(6, 1e308))).any()
 
 
 def test_a_huge_element_of_the_algebra_has_an_exponential() -> None:

@@ -21,11 +21,9 @@ LEFT_OUT = script("benchmarks/_command.py").LEFT_OUT
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_a_smoke_run_comes_to_its_end(name: str) -> None:
     """All checks of a script hold; one that misses a library or a device says which."""
-    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
     command = [sys.executable, FOLDER / f"{name}.py", "--smoke"]
-    done = subprocess.run(  # noqa: S603
-        command, capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": paths}
-    )
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)  # noqa: S603
     if done.returncode == LEFT_OUT:
         pytest.skip(done.stdout.strip().splitlines()[-1])
     assert done.returncode == 0, done.stdout + done.stderr

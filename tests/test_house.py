@@ -2,7 +2,6 @@
 
 import ast
 import inspect
-import pathlib
 import re
 import tomllib
 from pathlib import Path
@@ -38,16 +37,11 @@ def _code_lines(function: ast.FunctionDef, text: list[str]) -> int:
 
 def test_the_floors_are_those_that_are_checked() -> None:
     """The picture of the rooms is the contract of import-linter, and every room stands in the table."""
-    (contract,) = [
-        contract
-        for contract in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
-        if contract.get("containers") == ["nonholo"]
-    ]
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    (layers,) = (contract["layers"] for contract in contracts if contract.get("containers") == ["nonholo"])
     picture = re.search(r"## The rooms.*?```\n(.*?)```", PAGE, re.DOTALL)
     assert picture is not None
-    assert [line.split() for line in picture[1].splitlines()] == [
-        re.split(r"[ |]+", floor) for floor in contract["layers"]
-    ]
+    assert [line.split() for line in picture[1].splitlines()] == [re.split(r"[ |]+", floor) for floor in layers]
     rooms = {path.name for path in _boxes(LIBRARY)}
     listed = [line.split("|")[1] for line in PAGE.splitlines() if line.startswith("| `")]
     assert rooms == set(re.findall(r"`(\w+)`", " ".join(listed)))
@@ -117,7 +111,7 @@ def test_tags_are_true(problem: Problem) -> None:
 
 def test_no_module_shadows_a_public_name() -> None:
     """A room or module directly under the package with a public function's name would replace it on import."""
-    modules = {path.stem for path in pathlib.Path(nh.__file__).parent.iterdir()}
+    modules = {path.stem for path in LIBRARY.iterdir()}
     functions = {name for name in dir(nh) if not inspect.ismodule(getattr(nh, name))}
     assert not modules & functions
 

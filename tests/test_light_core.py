@@ -17,8 +17,10 @@ import nonholo as nh
 from nonholo.base.compiled import first_way
 
 PROGRAM = Path(__file__).parent / "without_extras.py"
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 WITHOUT_HOME = {"GroupLagrangeDAlembert", "LagrangeDAlembert", "allow_float32", "examples", "mass_tensor_lagrangian"}
-HEAVY = {"dask", "diffrax", "equinox", "jax", "matplotlib", "pandas", "pydantic", "xarray", "zarr"}
+HEAVY = {*("dask", "diffrax", "equinox", "jax", "matplotlib", "numba", "pandas", "pydantic", "scipy.sparse", "xarray")}
+HEAVY |= {"zarr"}
 
 
 def _run(*arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess:
@@ -40,15 +42,12 @@ def test_kernels_of_each_kind_of_motion() -> None:
 
 
 CERTIFIED = dict.fromkeys(("branch_growth [certified]", "branches [certified]"), "certify")
-ON_JAX = dict.fromkeys(
-    ("consistency_defect", "critical_values", "equilibria [near]", "fit", "linearize", "rollout", "steer", "step"),
-    "jax",
-)
-ON_JAX |= {"step": "jax", "step [flat]": "jax", "tracking_feedback": "jax", "steer [ipopt]": "steer"}
+ON_JAX = ("consistency_defect", "critical_values", "equilibria [near]", "fit", "linearize", "rollout", "steer", "step")
+ASKING = dict.fromkeys((*ON_JAX, "step [flat]", "tracking_feedback"), "jax") | {"steer [ipopt]": "steer"} | CERTIFIED
 
 
 @pytest.mark.profile("faults", keep=["quick*"])
-@pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", {**CERTIFIED, **ON_JAX})])
+@pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", ASKING)])
 def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
     """Each public name is there without extras, or asks for JAX; each call works, or asks for the extra it needs."""
     assert _printed("calls", which) == [dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax"), asked]
@@ -66,8 +65,8 @@ COMMANDS = [
 def test_commands_work(tmp_path: Path) -> None:
     """Every command but `paper` and `examples` does its work without extras."""
     sweep = str(PROGRAM.parents[1] / "scenarios" / "sleigh_turning_sweep.toml")
-    sleigh, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), tmp_path / "sleigh.zarr"
-    nh.simulate(sleigh, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
+    store = tmp_path / "sleigh.zarr"
+    nh.simulate(SLEIGH, body_velocity=(0.1, -1.0, 0.0), steps=50, store=store, checkpoint_every=20)
     for command in COMMANDS:
         done = _run("command", *command.replace("SWEEP", sweep).split(), folder=tmp_path)
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
@@ -76,16 +75,12 @@ def test_commands_work(tmp_path: Path) -> None:
 @pytest.mark.profile("faults", keep=["paper"])
 @pytest.mark.parametrize(
     ("command", "extra"),
-    [
-        (["paper"], "paper"),
-        (["examples"], "jax"),
-        (["simulate", "sleigh", "--set", 'run.difference="logarithmic"'], "jax"),
-    ],
+    [("paper", "paper"), ("examples", "jax"), ('simulate sleigh --set run.difference="logarithmic"', "jax")],
     ids=["paper", "examples", "logarithmic difference"],
 )
-def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: Path) -> None:
+def test_commands_that_need_an_extra(command: str, extra: str, tmp_path: Path) -> None:
     """A command that needs an extra says so in a sentence and does nothing."""
-    done = _run("command", *command, folder=tmp_path)
+    done = _run("command", *command.split(), folder=tmp_path)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert f"pip install 'nonholo[{extra}]'" in " ".join(done.stderr.split())
@@ -93,16 +88,14 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
 
 
 RUN = "o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)"
+FLOW = "o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))"
+SWEEP = f"nh.Grid({{'a': [1.0]}}); nh.sweep; {RUN}; nh.invariants(o)"
 
 
 @pytest.mark.profile("faults", keep=["simulate", "flow"])
 @pytest.mark.parametrize(
     ("run", "heavy"),
-    [
-        (RUN, {*HEAVY, "numba", "scipy.sparse"}),
-        ("o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))", {*HEAVY, "numba", "scipy.sparse"}),
-        (f"nh.Grid({{'a': [1.0]}}); nh.sweep; {RUN}; nh.invariants(o)", {"dask", "diffrax", "jax", "matplotlib"}),
-    ],
+    [(RUN, HEAVY), (FLOW, HEAVY), (SWEEP, {"dask", "diffrax", "jax", "matplotlib"})],
     ids=["simulate", "flow", "sweep"],
 )
 def test_a_run_loads_nothing_that_it_does_not_use(run: str, heavy: set[str]) -> None:
@@ -145,8 +138,7 @@ def _entered(call: Callable[[], Any]) -> list[Path]:
 
 
 def _of_a_sleigh() -> list[Path]:
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-    return _entered(lambda: nh.simulate(discrete, restricted_velocity=(0.3, 0.4), steps=10))
+    return _entered(lambda: nh.simulate(SLEIGH, restricted_velocity=(0.3, 0.4), steps=10))
 
 
 def _forms(q: Any) -> Any:

@@ -48,10 +48,9 @@ def test_jax_after_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
     sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
     with pytest.raises(RuntimeError, match="forked from one that had used JAX"):
         nh.step(sleigh, np.array([0.1, 0.1]))
+    top = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))
     with pytest.raises(RuntimeError, match="forked"):
-        nh.flow(
-            nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), times=[0, 1], restricted_velocity=(0.1, 0.1), method="diffrax"
-        )
+        nh.flow(top, times=[0, 1], restricted_velocity=(0.1, 0.1), method="diffrax")
 
 
 @pytest.mark.profile("faults", instead="test_jax_after_a_fork")

@@ -1,7 +1,6 @@
-"""The README says what is so: its commands are the ones CI runs, its example runs, its links lead somewhere."""
+"""README and pages say what is so: commands are those of CI, the example runs, links and references lead somewhere."""
 
 import json
-import pathlib
 import re
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from fuzz.__main__ import merged
 from fuzz.judge import BROKEN, GOOD
 from scripts import script
 
-ROOT = pathlib.Path(__file__).parents[1]
+ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 
 
@@ -24,7 +23,7 @@ def test_commands() -> None:
     assert all(f"readme_command '{command}$'" in ci for command in ("nonholo simulate suslov", "python -m pytest -q"))
 
 
-def test_example(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """The Python example runs, keeps energy as it claims, and leaves its files."""
     monkeypatch.chdir(tmp_path)
     (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -35,14 +34,14 @@ def test_example(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys
 
 
 @pytest.mark.parametrize("page", sorted(ROOT.glob("*.md")) + sorted(ROOT.glob("docs/**/*.md")), ids=lambda p: p.name)
-def test_links(page: pathlib.Path) -> None:
+def test_links(page: Path) -> None:
     """Every relative link of every page leads to a file."""
     links = re.findall(r"\]\((?!https?:|#)([^)#]+)", page.read_text())
     assert [link for link in links if not (page.parent / link).exists()] == []
 
 
 CLASSES = dict.fromkeys([*GOOD, *BROKEN], 1) | {"refused": 9}
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = ROOT / "docs"
 MAKER = "benchmarks/figures.py"
 
 
@@ -53,14 +52,11 @@ def test_the_figures_are_what_the_script_writes() -> None:
 
 
 def test_what_it_names_is_there() -> None:
-    """Links and files of tests on the page exist."""
+    """Files of tests on the page about reliability exist."""
     text = (DOCS / "reliability.md").read_text("utf-8")
-    links = [link.split(")")[0].partition("#")[0] for link in text.split("](")[1:] if not link.startswith("http")]
-    files = [word for word in text.split("`") if word.startswith("tests/")]
-    assert links
+    files = [word.split()[0] for word in text.split("`") if word.startswith("tests/")]
     assert files
-    assert all((DOCS / link).exists() for link in links)
-    assert all((DOCS.parent / file.split()[0]).exists() for file in files)
+    assert [file for file in files if not (ROOT / file).exists()] == []
 
 
 @pytest.mark.parametrize(
@@ -85,3 +81,22 @@ def test_figures_of_other_fuzzers_stay(tmp_path: Path) -> None:
     assert merged(file, {"kills": {"a": 1}}) == {"kills": {"a": 1}}
     file.write_text(json.dumps({"steps": {"b": 1}, "api": {"c": 1}}))
     assert list(merged(file, {"api": {"c": 2}}).items()) == [("api", {"c": 2}), ("steps", {"b": 1})]
+
+
+LIST = DOCS / "references.md"
+KEY = r"\[([a-z]+(?:-[a-z]+)*-(?:19|20)\d\d)\]"
+
+
+def cited() -> set[str]:
+    """Return the keys in brackets in the documentation, the package and the benchmarks."""
+    places = [*ROOT.glob("docs/**/*.md"), *ROOT.glob("nonholo/**/*.py"), *ROOT.glob("benchmarks/**/*.py")]
+    return {key for place in places if place != LIST for key in re.findall(KEY, place.read_text("utf-8"))}
+
+
+def test_every_reference_is_listed_once_and_cited() -> None:
+    """Keys are listed in order, once, and cited; the last column says how much of the text was at hand."""
+    rows = re.findall(rf"^\| {KEY} \|.*\| (.*) \|$", LIST.read_text("utf-8"), re.MULTILINE)
+    listed = [key for key, _ in rows]
+    assert listed == sorted(set(listed))
+    assert cited() == set(listed)
+    assert all(re.match("text|abstract|not read|not recorded", read) for _, read in rows)

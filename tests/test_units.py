@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from unit_changes import UNITS, WIDE, J, in_space
 
 import nonholo as nh
 from nonholo.base.results import Outcome
@@ -12,26 +13,13 @@ from nonholo.discrete import Branches
 from nonholo.discrete.branching._equations import follow, frame_of
 from nonholo.kernels import suslov_body
 
-J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 ROWS = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-MIXED = np.random.default_rng(5).normal(size=(3, 6))
-WIDE = np.cov(np.random.default_rng(0).normal(size=(4, 9)))
-FORM = np.diag([1.0, 1.0, -1.0])
+ARROWHEAD = np.arange(1.0, 6.0), np.full(4, 0.2)
+FORM, UNEVEN = np.diag([1.0, 1.0, -1.0]), np.diag([1.0, 2.0, 0.5])
 LORENTZ = nh.MatrixGroup(FORM @ nh.SO(3).basis, form=FORM)
 
 
-def _wide(mass: float, length: float) -> np.ndarray:
-    """Return the mass tensor of a body in space, in homogeneous coordinates."""
-    lengths = np.append(np.full(3, length), 1.0)
-    return WIDE * np.outer(lengths, lengths) * mass
-
-
-def _mixed(length: float) -> np.ndarray:
-    """Return rows of velocities in space, of turns and slides together."""
-    return MIXED * np.repeat([1.0, length], 3)
-
-
-def _in_space(inertia: np.ndarray) -> Callable[[float, float], nh.MultidimensionalSleigh]:
+def _sleigh(inertia: np.ndarray) -> Callable[[float, float], nh.MultidimensionalSleigh]:
     """Return a sleigh in space in any unit of mass and length."""
     center = np.array([0.3, 0.2, -0.1])
     return lambda mass, length: nh.MultidimensionalSleigh(1.3 * mass, center * length, inertia * mass * length**2)
@@ -41,24 +29,20 @@ SYSTEMS: dict[str, Callable[[float, float], Any]] = {
     "top": lambda mass, length: nh.SuslovTop(J * mass * length**2),
     "top about a tilted axis": lambda mass, length: nh.SuslovTop(J * mass * length**2, axis=(0.6, 0.0, 0.8)),
     "top 4": lambda mass, length: nh.SuslovTop(WIDE * mass * length**2),
-    "arrowhead top": lambda mass, length: nh.SuslovTop.arrowhead(
-        mass * length**2 * np.arange(1.0, 6.0), mass * length**2 * np.full(4, 0.2)
-    ),
+    "arrowhead top": lambda mass, length: nh.SuslovTop.arrowhead(*(mass * length**2 * part for part in ARROWHEAD)),
     "sleigh": lambda mass, length: nh.ChaplyginSleigh(mass, 1.2 * mass * length**2, 0.5 * length, 0.3 * length),
-    "sleigh in space": _in_space(np.eye(3)),
-    "long sleigh in space": _in_space(np.diag([1.0, 2.0, 3.0])),
+    "sleigh in space": _sleigh(np.eye(3)),
+    "long sleigh in space": _sleigh(np.diag([1.0, 2.0, 3.0])),
     "LL on SO(3)": lambda mass, length: nh.LLSystem(nh.SO(3), J * mass * length**2, ROWS),
-    "LL on SE(3)": lambda mass, length: nh.LLSystem(nh.SE(3), _wide(mass, length), _mixed(length)),
-    "LL with a form": lambda mass, length: nh.LLSystem(
-        LORENTZ, np.diag([1.0, 2.0, 0.5]) * mass * length**2, np.eye(3)[:2]
-    ),
+    "LL on SE(3)": lambda mass, length: nh.LLSystem(nh.SE(3), *in_space(mass, length)),
+    "LL with a form": lambda mass, length: nh.LLSystem(LORENTZ, UNEVEN * mass * length**2, np.eye(3)[:2]),
     "LR on SO(3)": lambda mass, length: nh.LRSystem(nh.SO(3), J * mass * length**2, ROWS),
-    "LR on SE(3)": lambda mass, length: nh.LRSystem(nh.SE(3), _wide(mass, length), _mixed(length)),
+    "LR on SE(3)": lambda mass, length: nh.LRSystem(nh.SE(3), *in_space(mass, length)),
     "free body": lambda mass, length: nh.RigidBody(J * mass * length**2),
-    "free body in space": lambda mass, length: nh.RigidBody(_wide(mass, length), nh.SE(3)),
+    "free body in space": lambda mass, length: nh.RigidBody(in_space(mass, length)[0], nh.SE(3)),
     "Veselova top": lambda mass, length: nh.VeselovaTop(J * mass * length**2),
 }
-UNITS = [2.0**exponent for exponent in (-490, -245, 245, 490)]
+FACTORS = [2.0**exponent for exponent in (-490, -245, 245, 490)]
 SPEEDS = (0.3, 3.0, 30.0)  # the last ones beyond folds
 
 
@@ -70,7 +54,7 @@ def _run(name: str, speed: float, mass: float = 1.0, time: float = 1.0, order: i
 
 
 @pytest.mark.profile("problems", keep=["LL on SE(3)*", "LR on SO(3)*", "free body-*"])
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("unit", FACTORS)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_units_of_mass_and_time_do_not_matter(name: str, unit: float) -> None:
     """Neither outcome nor displacement changes; nothing over- or underflows on the way."""
@@ -96,7 +80,7 @@ def test_the_disc_of_the_certificate_does_not_depend_on_the_unit_of_mass() -> No
     """Products of the coupling underflow without a unit, and the disc would reach beyond folds."""
     B, c = J[:2, :2] + 0.9 * np.eye(2), J[:2, 2]
     radius = suslov_body(B, c).certain
-    for mass in UNITS:
+    for mass in FACTORS:
         assert suslov_body(mass * B, mass * c).certain == radius
 
 
@@ -128,7 +112,7 @@ KNOWN = [name for name in SYSTEMS if not name.startswith(("LR", "free", "Ves"))]
 
 
 @pytest.mark.profile("problems", keep=["top 4-*", "sleigh-*", "long sleigh*"])
-@pytest.mark.parametrize("unit", ["mass", "length", "time"])
+@pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("name", KNOWN)
 def test_units_do_not_matter_to_the_values_of_the_map(name: str, unit: str) -> None:
     """Powers of two change no bit of any value, powers of ten round; none is lost, and they keep their order."""
@@ -183,32 +167,20 @@ def test_a_fold_is_met_at_the_same_place_on_the_way_to_any_momentum(name: str) -
     np.testing.assert_allclose(folds, np.tile(folds[0], (3, 1)), rtol=0, atol=1e-4)  # the root of the shortest step
 
 
-@pytest.mark.parametrize(
-    ("branch", "mass", "center", "inertia", "velocity"),
-    [
-        (
-            "smallest",
-            0.85,
-            [0.05, 1.65, 0.22],
-            [[1.24, 0.01, 0.96], [0.01, 1.07, 0.26], [0.96, 0.26, 1.84]],
-            [-0.93, -1.11, 0.56],
-        ),
-        (
-            "largest",
-            1.18,
-            [-0.09, 0.2, -0.44],
-            [[1.26, -0.28, -0.46], [-0.28, 1.33, -0.59], [-0.46, -0.59, 1.13]],
-            [-0.4, -0.78, 1.06],
-        ),
-    ],
-)
-def test_the_smallest_momentum_does_not_depend_on_the_unit_of_length(
-    branch: str, mass: float, center: list[float], inertia: list[list[float]], velocity: list[float]
-) -> None:
+OBLIQUE = np.array([[1.24, 0.01, 0.96], [0.01, 1.07, 0.26], [0.96, 0.26, 1.84]])
+TILTED = np.array([[1.26, -0.28, -0.46], [-0.28, 1.33, -0.59], [-0.46, -0.59, 1.13]])
+BRANCHES: dict[str, Any] = {
+    "smallest": (0.85, [0.05, 1.65, 0.22], OBLIQUE, [-0.93, -1.11, 0.56]),
+    "largest": (1.18, [-0.09, 0.2, -0.44], TILTED, [-0.4, -0.78, 1.06]),
+}
+
+
+@pytest.mark.parametrize("branch", BRANCHES)
+def test_the_smallest_momentum_does_not_depend_on_the_unit_of_length(branch: str) -> None:
     """Angular and linear momenta are compared in the unit of the body, so that a rule takes the same values."""
-    turns = []
+    (mass, center, inertia, velocity), turns = BRANCHES[branch], []
     for length in (1.0, 1e-3, 1e3):
-        sleigh = nh.MultidimensionalSleigh(mass, np.array(center) * length, np.array(inertia) * length**2)
+        sleigh = nh.MultidimensionalSleigh(mass, np.array(center) * length, inertia * length**2)
         start = np.array(velocity) * [1.0, 1.0, length]
         orbit = nh.simulate(nh.discretize(sleigh, 0.5), restricted_velocity=start, steps=3, branch=branch)
         turns.append(orbit.displacement[:, :3, :3])

@@ -18,14 +18,11 @@ TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
 READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
-QUOTED = {
-    "docs/references.md": r"\*[^*\n]+\*",
-    "CHANGELOG.md": r"(?s)\n## \[0\.[12]\..*",
-}  # titles of works, past releases
+# titles of works, past releases
+QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[0\.[12]\..*"}
 QUOTATION = r"“[^”]*”"
-GENERATED = re.compile(
-    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|project/figures|tests)\.md"
-)  # by scripts
+# by scripts
+GENERATED = re.compile(r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|project/figures|tests)\.md")
 NO_PROSE = {"references.md", "project/migration.md"}
 MOST = 80_000
 

@@ -11,6 +11,7 @@ from refusals import refusals
 import nonholo as nh
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+DISCRETE = nh.discretize(SLEIGH, 0.1)
 TIMES = np.linspace(0.0, 3.0, 7)
 START: dict[str, Any] = {"restricted_velocity": (0.3, -0.7)}
 
@@ -53,10 +54,8 @@ def _rate(potential: Any, force: Any) -> Any:
 
 
 def _work(potential: Any, force: Any) -> Any:
-    rows = np.arange(2.0), np.stack([np.eye(3)] * 2), np.ones((2, 3))
-    orbit = nh.Orbit.from_poses(SLEIGH, rows[0], rows[1])
     system = nh.Forced(SLEIGH, potential, force)
-    return system.applied_force(0.0, *(x[0] for x in rows[1:])), system.potential_energy(orbit.configuration)
+    return system.applied_force(0.0, np.eye(3), np.ones(3)), system.potential_energy(np.eye(3)[None])
 
 
 USES = {"flow": _flow, "simulate": _run, "vector_field": _rate, "by itself": _work}
@@ -84,30 +83,27 @@ def _late(*state: Any) -> np.ndarray:
     return np.array([np.nan if state[0] > 0.25 else 0.0, 0.0, 0.0])
 
 
-def test_a_force_that_is_not_finite_is_named_with_its_time_by_a_run() -> None:
-    """The run ends at the first node after, keeps the states before, and says which function gave what, and when."""
-    with pytest.raises(nh.OutcomeError, match=r"\[nan, 0.0, 0.0\] from `_late` at time 0.3") as ended:
-        _run(None, _late)
+def _well(g: np.ndarray) -> float:
+    return np.nan * g[0, 0]
+
+
+@pytest.mark.parametrize(
+    ("use", "potential", "force", "told", "states"),
+    [
+        (_run, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.3", 3),
+        (_flow, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.2", 1),
+        (_run, _well, None, r"`Forced\(potential=...\)` must be finite. Got nan from `_well`", 0),
+    ],
+    ids=["force in a run", "force in a flow", "potential in a run"],
+)
+def test_what_is_not_finite_is_named_with_its_time(
+    use: Any, potential: Any, force: Any, told: str, states: int
+) -> None:
+    """A run ends at the first node after, a flow as near as its steps are short; the states before are kept."""
+    with pytest.raises(nh.OutcomeError, match=told) as ended:
+        use(potential, force)
     assert ended.value.outcome == nh.Outcome.nonfinite
-    assert len(ended.value.orbit) == 3
-
-
-def test_a_force_that_is_not_finite_is_named_with_its_time_by_a_flow() -> None:
-    """The flow comes as near to that time as its steps can be short, and keeps the states before."""
-    with pytest.raises(nh.OutcomeError, match=r"\[nan, 0.0, 0.0\] from `_late` at time 0.2") as ended:
-        _flow(None, _late)
-    assert ended.value.outcome == nh.Outcome.nonfinite
-    assert ended.value.orbit.time.tolist() == [0.0]
-
-
-def test_a_potential_that_is_not_finite_is_named_by_a_run() -> None:
-    """Its slope by differences would be NaN without a word on where it came from."""
-
-    def well(g: np.ndarray) -> float:
-        return np.nan * g[0, 0]
-
-    with pytest.raises(nh.OutcomeError, match=r"`Forced\(potential=...\)` must be finite. Got nan from `well`"):
-        _run(well, None)
+    assert len(ended.value.orbit) == states
 
 
 NOT_NUMBERS: dict[str, Any] = {
@@ -128,10 +124,9 @@ def test_forces_that_are_no_real_numbers_are_refused(kind: str) -> None:
     def push(*_: Any) -> Any:
         return NOT_NUMBERS[kind]
 
+    told = r"(?s)`Forced\(force=...\)` must return 3 real numbers. Got .* from `push`"
     for use in (_run, _flow):
-        with pytest.raises(
-            TypeError, match=r"(?s)`Forced\(force=...\)` must return 3 real numbers. Got .* from `push`"
-        ):
+        with pytest.raises(TypeError, match=told):
             use(None, push)
 
 
@@ -142,26 +137,19 @@ def test_potentials_that_are_no_real_number_are_refused(value: Any) -> None:
         _run(lambda _: value, None)
 
 
-def test_events_and_rules_cannot_change_a_run() -> None:
-    """An event sees the states of the run through views that are read-only."""
-
-    def reset(states: Any) -> np.ndarray:
-        states.reduced_momentum[:] = 0
-        return states.time + 1
-
-    with pytest.raises(ValueError, match=r"must not write to its arguments. Got `reset`"):
-        nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=5, events=[reset])
+def _reset(states: Any) -> np.ndarray:
+    states.reduced_momentum[:] = 0
+    return states.time + 1
 
 
-def test_reductions_cannot_change_an_ensemble() -> None:
-    """What a reduction writes would be seen by the next one."""
-    with pytest.raises(ValueError, match=r"`ensemble\(reduce=...\)` must not write to its arguments"):
-        nh.ensemble(
-            nh.discretize(SLEIGH, 0.1),
-            restricted_velocity=np.ones((2, 2)),
-            steps=2,
-            reduce=lambda batch: batch.reduced_momentum.fill(0),
-        )
+# Events see the states of a run through views that are read-only; what a reduction writes the next one would see.
+test_events_and_reductions_cannot_change_states = refusals(
+    (lambda: nh.simulate(DISCRETE, **START, steps=5, events=[_reset]), "must not write to its arguments. Got `_reset`"),
+    (
+        lambda: nh.ensemble(DISCRETE, restricted_velocity=np.ones((2, 2)), steps=2, reduce=_reset),
+        r"`ensemble\(reduce=...\)` must not write to its arguments",
+    ),
+)
 
 
 def test_an_orbit_that_is_not_finite_is_not_successful() -> None:
@@ -174,7 +162,7 @@ def test_an_orbit_that_is_not_finite_is_not_successful() -> None:
 @pytest.mark.parametrize(("steps", "place"), [(5, 3), (9000, 0), (9000, 4096), (9000, 9000)])
 def test_one_number_that_is_not_finite_is_seen(number: float, steps: int, place: int) -> None:
     """In few numbers, and in each piece of many."""
-    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=steps)
+    orbit = nh.simulate(DISCRETE, **START, steps=steps)
     momenta = orbit.reduced_momentum.copy()
     rows = {"time": orbit.time, "cayley": orbit.cayley, "canonical_pose": orbit.canonical_pose}
     assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.successful

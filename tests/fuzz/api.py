@@ -45,13 +45,11 @@ def figures(found: list[tuple[Trial, Verdict]]) -> dict[str, Any]:
 def lines(found: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what broke."""
     refused = found["classes"]["refused"]
-    head = [
-        f"{found['trials']} trials of {found['call forms']} call forms; {found['named']} of {refused} refusals name "
-    ]
-    head[0] += "the changed argument"
+    head = f"{found['trials']} trials of {found['call forms']} call forms; "
+    head += f"{found['named']} of {refused} refusals name the changed argument"
     table = [f"{kind:10} {count:6}" for kind, count in found["classes"].items()]
     again = "python tests/fuzz/api.py --only"
-    return head + table + [f"{x['class']}: {again} '{x['trial']}'\n    {x['message']}" for x in found["broken"]]
+    return [head, *table] + [f"{x['class']}: {again} '{x['trial']}'\n    {x['message']}" for x in found["broken"]]
 
 
 def main() -> int:

@@ -31,9 +31,12 @@ def _in_itself() -> list[Any]:
     return found
 
 
-NUMBERS = ("10**400", "-10**400", "10**5000", "10**30", "2**63", "2**53", "10**12", "-1", "0", "-0.0", "0.5", "2.0")
+INTEGERS = ("10**400", "-10**400", "10**5000", "10**30", "2**63", "2**53", "10**12", "-1", "0")
+EXPRESSIONS = (*INTEGERS, "-0.0", "0.5", "2.0", "1j", "None", "True", "False", "np.True_")
+FLOATS = ("nan", "inf", "-inf", "1e308", "-1e308", "1e160", "1e-160", "5e-324")
 CONSTANT: dict[str, Callable[[], Any]] = {
-    "None": lambda: None,
+    **{text: functools.partial(eval, text) for text in EXPRESSIONS},
+    **{text: functools.partial(float, text) for text in FLOATS},
     "text": lambda: "abc",
     "text of a number": lambda: "1.5",
     "empty text": lambda: "",
@@ -45,19 +48,10 @@ CONSTANT: dict[str, Callable[[], Any]] = {
     "datetime64": lambda: np.datetime64("2020-01-01"),
     "timedelta64": lambda: np.timedelta64(3, "s"),
     "date": lambda: datetime.date(2020, 1, 1),
-    "True": lambda: True,
-    "False": lambda: False,
-    "np.True_": lambda: np.True_,
-    "nan": lambda: float("nan"),
-    "inf": lambda: float("inf"),
-    "-inf": lambda: float("-inf"),
     "nan of 16 bits": lambda: np.float16("nan"),
-    "1j": lambda: 1j,
     "complex without imaginary part": lambda: np.complex128(1.0),
-    **{text: functools.partial(eval, text) for text in NUMBERS},
     "np.int8": lambda: np.int8(3),
     "np.uint64": lambda: np.uint64(2**64 - 1),
-    **{text: functools.partial(float, text) for text in ("1e308", "-1e308", "1e160", "1e-160", "5e-324")},
     "longdouble": lambda: np.longdouble("1e4000"),
     "fraction": lambda: fractions.Fraction(1, 3),
     "decimal": lambda: decimal.Decimal("0.1"),
@@ -131,20 +125,22 @@ def _read_only(value: np.ndarray) -> np.ndarray:
     return value
 
 
+def _with_none(value: np.ndarray) -> np.ndarray:
+    changed = value.astype(object)
+    changed.flat[: min(1, changed.size)] = None
+    return changed
+
+
+TYPES = {"float32": np.float32, "float16": np.float16, "longdouble": np.longdouble, "big endian": ">f8"}
+TYPES |= {"integers": int, "complex": complex, "truth values": bool, "texts": str, "bytes": "S", "objects": object}
+TYPES |= {"dates": "datetime64[s]", "times": "timedelta64[s]"}
+ENTRIES = {"nan": np.nan, "inf": np.inf, "1e308": 1e308, "zero": 0.0}
+FACTORS = ("1e308", "1e160", "1e20", "1e-20", "1e-160", "5e-324")
 DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
-    "as float32": lambda v: v.astype(np.float32),
-    "as float16": lambda v: v.astype(np.float16),
-    "as longdouble": lambda v: v.astype(np.longdouble),
-    "as big endian": lambda v: v.astype(">f8"),
-    "as integers": lambda v: v.astype(int),
-    "as complex": lambda v: v.astype(complex),
+    **{f"as {name}": lambda v, kind=kind: v.astype(kind) for name, kind in TYPES.items()},
+    **{f"one {name}": lambda v, entry=entry: _entry(v, entry) for name, entry in ENTRIES.items()},
+    **{f"times {factor}": lambda v, factor=float(factor): v * factor for factor in FACTORS},
     "as complex, not real": lambda v: v * (1 + 1e-3j),
-    "as truth values": lambda v: v.astype(bool),
-    "as texts": lambda v: v.astype(str),
-    "as bytes": lambda v: v.astype("S"),
-    "as dates": lambda v: v.astype("datetime64[s]"),
-    "as times": lambda v: v.astype("timedelta64[s]"),
-    "as objects": lambda v: v.astype(object),
     "as fractions": lambda v: [fractions.Fraction(float(x)) for x in v.flat] if v.ndim == 1 else v,
     "as a list": lambda v: v.tolist(),
     "as a tuple": lambda v: tuple(v) if v.ndim else (v,),
@@ -158,14 +154,9 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "by columns": np.asfortranarray,
     "reversed": lambda v: v[::-1] if v.ndim else v,
     "transposed": lambda v: v.T,
-    "one nan": lambda v: _entry(v, np.nan),
-    "one inf": lambda v: _entry(v, np.inf),
-    "one 1e308": lambda v: _entry(v, 1e308),
-    "one zero": lambda v: _entry(v, 0.0),
-    "one None": lambda v: _with_none(v),
+    "one None": _with_none,
     "zeros": np.zeros_like,
     "negative": np.negative,
-    **{f"times {x}": lambda v, x=float(x): v * x for x in ("1e308", "1e160", "1e20", "1e-20", "1e-160", "5e-324")},
     "one axis more": lambda v: v[None],
     "two axes more": lambda v: v[None, None],
     "one axis less": lambda v: v[0] if v.ndim and len(v) else v,
@@ -176,12 +167,6 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "none of them": lambda v: v[:0] if v.ndim else v,
     "very many of them": lambda v: np.broadcast_to(v, (10**12, *v.shape)),
 }
-
-
-def _with_none(value: np.ndarray) -> np.ndarray:
-    changed = value.astype(object)
-    changed.flat[: min(1, changed.size)] = None
-    return changed
 
 
 def names(value: Any) -> list[str]:

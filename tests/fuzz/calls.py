@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -39,15 +40,29 @@ class Call:
         return list(itertools.islice(result, _BLOCKS)) if self.name.startswith("iterate") else result
 
 
-def call(name: str, function: Callable[..., Any], /, **given: Any) -> Call:
-    """Return a call that works: arguments, and which of slow, stores and infinite it is."""
+def call(name: str, function: Callable[..., Any] | None = None, /, **given: Any) -> Call:
+    """Return a call that works, by default of the public name: arguments, and which of slow, stores, infinite it is."""
     flags = {flag: given.pop(flag, False) for flag in ("slow", "stores", "infinite")}
-    return Call(name, function, given, **flags)
+    return Call(name, function or operator.attrgetter(name.partition(" [")[0])(nh), given, **flags)
 
 
 def slow(calls: list[Call]) -> list[Call]:
     """Return calls that compile, by JAX or numba."""
     return [dataclasses.replace(each, slow=True) for each in calls]
+
+
+def closed(draw: Callable[..., Any]) -> Callable[..., None]:
+    """Return a function that draws a picture and closes it."""
+
+    def drawn(**given: Any) -> None:
+        import matplotlib.pyplot as plt
+
+        try:
+            draw(**given)
+        finally:
+            plt.close("all")
+
+    return drawn
 
 
 def by_position(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -10,8 +10,6 @@ from nonholo.analysis import deltoid
 
 _RUN = nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=8)
 _RECORD = {"t": _RUN.time, "x": _RUN.position[:, 0], "y": _RUN.position[:, 1], "theta": _RUN.heading}
-
-
 _HEAVY = nh.Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.0, 0.1]))
 
 
@@ -29,22 +27,20 @@ def _of_systems() -> list[Call]:
     ahead = {"configuration": array(np.eye(3)), "body_velocity": array([0.0, 0.4, 0.0])}
     halved = nh.simulate(nh.discretize(system, float(SLEIGH.time_step) / 2), body_velocity=(1.0, 0.3, 0.0), steps=40)
     return [
-        call("asymptotics", nh.asymptotics, subject=thing(system)),
-        call("asymptotics [orbit]", nh.asymptotics, subject=thing(orbit)),
-        call("compare", nh.compare, orbit=thing(orbit), flow=thing(orbit)),
-        call("compare [several]", nh.compare, orbit=thing([orbit, halved]), flow=thing(orbit)),
-        call("conserved_momenta", nh.conserved_momenta, system=thing(system)),
-        call("equilibria", nh.equilibria, system=thing(system), energy=positive(1.0)),
-        call(
-            "equilibria [free]", nh.equilibria, system=thing(nh.RigidBody(np.diag([1.0, 2, 3]))), energy=positive(1.0)
-        ),
-        call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
-        call("equilibria [near]", nh.equilibria, system=thing(_HEAVY), configuration=array(np.eye(3)), slow=True),
-        call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
-        call("invariants", nh.invariants, orbit=thing(orbit)),
-        call("linearize", nh.linearize, system=thing(SLEIGH), **ahead, slow=True),
-        call("lyapunov_exponents", nh.lyapunov_exponents, orbit=thing(orbit)),
-        call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
+        call("asymptotics", subject=thing(system)),
+        call("asymptotics [orbit]", subject=thing(orbit)),
+        call("compare", orbit=thing(orbit), flow=thing(orbit)),
+        call("compare [several]", orbit=thing([orbit, halved]), flow=thing(orbit)),
+        call("conserved_momenta", system=thing(system)),
+        call("equilibria", system=thing(system), energy=positive(1.0)),
+        call("equilibria [free]", system=thing(nh.RigidBody(np.diag([1.0, 2, 3]))), energy=positive(1.0)),
+        call("equilibria [discrete]", system=thing(TOP), energy=positive(1.0)),
+        call("equilibria [near]", system=thing(_HEAVY), configuration=array(np.eye(3)), slow=True),
+        call("invariant_measure", motion=thing(TOP), energy=positive(1.0)),
+        call("invariants", orbit=thing(orbit)),
+        call("linearize", system=thing(SLEIGH), **ahead, slow=True),
+        call("lyapunov_exponents", orbit=thing(orbit)),
+        call("lyapunov_function", system=thing(system)),
     ]
 
 
@@ -57,35 +53,30 @@ def _of_maps() -> list[Call]:
     start = {"energy": positive(0.5), "side": integer(1)}
     record = {"system_of": function(_slide), "measurements": anything(_RECORD), "guess": anything({"a": 0.4})}
     record |= {"time_step": positive(0.1), "noise": anything(0.01), "bounds": anything({"a": (0.1, 1.0)})}
-    record |= {"loss": text("linear")}
-    steered = {
-        **sleigh,
-        "start": anything({}),
-        "goal": anything({"restricted_velocity": (0.1, 0.2)}),
-        "steps": count(3),
-    }
-    to_rest = {"bounds": anything(None), "cost": text("effort")}
+    begin = anything({"restricted_velocity": (0.1, 0.2)})
+    steered = {**sleigh, "start": anything({}), "goal": begin, "steps": count(3)}
     around = {"method": text("ipopt"), "obstacles": anything(([(2.0, 0.0)], 0.5)), "outline": anything([(0.0, 0.1)])}
     around |= {"via": anything({2: (0.1, 0.0)}), "state_bounds": anything({"x": (-1.0, 1.0)})}
     around |= {"guess": anything([(0.0, 0.0), (0.1, 0.0)]), "progress": flag(False)}
     weights = {f"{part}_weight": positive(1.0) for part in ("state", "control", "final")}
-    follow, begin = nh.tracking_feedback, anything({"restricted_velocity": (0.1, 0.2)})
     followed = {**sleigh, "start": begin, "controls": array(np.zeros((3, 3))), **weights, "bounds": anything(None)}
     values = {"linearization": thing(_ahead), "interval": array([1.0, 2.0]), "samples": count(1)}
     return [
-        call("critical_energies", nh.critical_energies, **top),
-        call("critical_values", nh.critical_values, **values, slow=True),
-        call("flow_obstruction", nh.flow_obstruction, **sleigh, energy=positive(0.5), samples=count(4)),
-        call("half_planes", nh.half_planes, **top, displacement=array(W, "batch")),
-        call("half_planes [momentum]", nh.half_planes, **top, momentum=array([0.1, 0.2, 0.05], "batch")),
-        call("heteroclinic", nh.heteroclinic, **sleigh, **start, configuration=array(np.eye(3))),
-        call("heteroclinic [displacement]", nh.heteroclinic, **top, displacement=array(W)),
-        call("invariant_curve", nh.invariant_curve, **top, energy=positive(0.5), resolution=count(40)),
-        call("invariant_curve [sleigh]", nh.invariant_curve, **sleigh, energy=positive(0.5), resolution=count(40)),
-        *slow([call("fit", nh.fit, **record), call("steer", nh.steer, **steered, **to_rest)]),
-        *slow([call("steer [ipopt]", nh.steer, **steered, **around), call("tracking_feedback", follow, **followed)]),
-        call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),
-        call("single_valued_region", nh.single_valued_region, sleigh=thing(SLEIGH)),
+        call("critical_energies", **top),
+        call("critical_values", **values, slow=True),
+        call("flow_obstruction", **sleigh, energy=positive(0.5), samples=count(4)),
+        call("half_planes", **top, displacement=array(W, "batch")),
+        call("half_planes [momentum]", **top, momentum=array([0.1, 0.2, 0.05], "batch")),
+        call("heteroclinic", **sleigh, **start, configuration=array(np.eye(3))),
+        call("heteroclinic [displacement]", **top, displacement=array(W)),
+        call("invariant_curve", **top, energy=positive(0.5), resolution=count(40)),
+        call("invariant_curve [sleigh]", **sleigh, energy=positive(0.5), resolution=count(40)),
+        call("fit", **record, loss=text("linear"), slow=True),
+        call("steer", **steered, bounds=anything(None), cost=text("effort"), slow=True),
+        call("steer [ipopt]", **steered, **around, slow=True),
+        call("tracking_feedback", **followed, slow=True),
+        call("momentum_locus", **top, resolution=count(12)),
+        call("single_valued_region", sleigh=thing(SLEIGH)),
     ]
 
 
@@ -111,13 +102,14 @@ def _of_results() -> list[Call]:
 
 
 def _checks() -> list[Call]:
-    rng, check = integer(0), nh.testing
+    rng, top, velocity = integer(0), thing(TOP), array([0.4, 0.9, 0.0], "start")
     short = {"steps": count(2), "definition": flag(False), "tolerance_factor": positive(10.0), "throw": flag(True)}
     few = {"steps": count(4), "halvings": count(1), "tolerance": positive(0.5), "throw": flag(True)}
-    velocity = array([0.4, 0.9, 0.0], "start")
-    return [
-        call("testing.check_order", check.check_order, discrete=thing(TOP), body_velocity=velocity, **few, slow=True),
-        call("testing.check_group", check.check_group, group=thing(nh.SO(3)), rng=rng, compiled=flag(False), slow=True),
-        call("testing.check_system", check.check_system, system=thing(TOP.system), rng=rng, slow=True),
-        call("testing.check_discretization", check.check_discretization, discrete=thing(TOP), **short, slow=True),
-    ]
+    return slow(
+        [
+            call("testing.check_order", discrete=top, body_velocity=velocity, **few),
+            call("testing.check_group", group=thing(nh.SO(3)), rng=rng, compiled=flag(False)),
+            call("testing.check_system", system=thing(TOP.system), rng=rng),
+            call("testing.check_discretization", discrete=top, **short),
+        ]
+    )

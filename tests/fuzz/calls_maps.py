@@ -20,32 +20,19 @@ BENT = np.array([0.2, -0.3, 0.0])
 def calls() -> list[Call]:
     """Return the calls of this file."""
     options: dict[str, Argument] = {"difference": rule("matrix"), "constraint": rule("skew"), "order": count(2)}
-    W = nh.SO(3).exp(BENT)
+    W, top = nh.SO(3).exp(BENT), {"discrete": thing(TOP)}
+    start = {"restricted_velocity": array([0.3, -0.2]), "configuration": array(W)}
+    free = {"mass_tensor": array(J, "any"), "momentum": array([0.3, 0.4, 0.2]), "time_step": positive(0.1)}
+    driven = {"controls": array(np.zeros((2, 3))), "steps": count(2), "save_every": count(1)}
     return [
-        call("discretize", nh.discretize, system=thing(TOP.system), time_step=positive(0.2), **options),
+        call("discretize", system=thing(TOP.system), time_step=positive(0.2), **options),
         *(_inverse(name, DISCRETE[name]) for name in ("top", "sleigh", "top 4")),
         *_branches(),
-        call("discrete_legendre", nh.discrete_legendre, discrete=thing(TOP), displacement=array(W), side=text("left")),
-        call("step", nh.step, discrete=thing(TOP), momentum=array([0.1, 0.2]), branch=rule("principal"), slow=True),
-        call(
-            "rollout",
-            nh.rollout,
-            discrete=thing(TOP),
-            restricted_velocity=array([0.3, -0.2]),
-            configuration=array(W),
-            controls=array(np.zeros((2, 3))),
-            steps=count(2),
-            save_every=count(1),
-            slow=True,
-        ),
-        call("step [flat]", nh.step, discrete=thing(FLAT), momentum=array([0.1, 0.2, 0.1]), slow=True),
-        call(
-            "moser_veselov_displacement",
-            nh.moser_veselov_displacement,
-            mass_tensor=array(J, "any"),
-            momentum=array([0.3, 0.4, 0.2]),
-            time_step=positive(0.1),
-        ),
+        call("discrete_legendre", **top, displacement=array(W), side=text("left")),
+        call("step", **top, momentum=array([0.1, 0.2]), branch=rule("principal"), slow=True),
+        call("rollout", **top, **start, **driven, slow=True),
+        call("step [flat]", discrete=thing(FLAT), momentum=array([0.1, 0.2, 0.1]), slow=True),
+        call("moser_veselov_displacement", **free),
         *_matrices(W),
     ]
 
@@ -53,42 +40,35 @@ def calls() -> list[Call]:
 def _inverse(name: str, discrete: nh.Discretization) -> Call:
     W = nh.simulate(discrete, restricted_velocity=[0.3, -0.2, 0.1][: discrete.system.rank], steps=1).displacement[0]
     momentum = array(nh.discrete_legendre(discrete, W))
-    function = nh.inverse_discrete_legendre
-    return call(f"inverse_discrete_legendre [{name}]", function, discrete=thing(discrete), momentum=momentum)
+    return call(f"inverse_discrete_legendre [{name}]", discrete=thing(discrete), momentum=momentum)
 
 
 def _branches() -> list[Call]:
     found = []
     for name, discrete, r in (("top", TOP, [0.1, 0.2]), ("sleigh", SLEIGH, [0.3, 0.4]), ("top 4", TOP_4, [0.1] * 3)):
-        given, W = (
-            {"discrete": thing(discrete)},
-            discrete.system.group.exp(0.3 * discrete.system.constraint_subspace[0]),
-        )
+        system, asked = discrete.system, {"discrete": thing(discrete)}
+        W = {"displacement": array(system.group.exp(0.3 * system.constraint_subspace[0]))}
         found += [
-            call(f"branches [{name}]", nh.branches, **given, displacement=array(W)),
-            call(f"displacements_over [{name}]", nh.displacements_over, **given, restricted_momentum=array(r)),
-            call(f"fold_distance [{name}]", nh.fold_distance, **given, displacement=array(W)),
-            call(f"branch_tree [{name}]", nh.branch_tree, **given, displacement=array(W), depth=integer(2)),
+            call(f"branches [{name}]", **asked, **W),
+            call(f"displacements_over [{name}]", **asked, restricted_momentum=array(r)),
+            call(f"fold_distance [{name}]", **asked, **W),
+            call(f"branch_tree [{name}]", **asked, **W, depth=integer(2)),
         ]
-    certified = {"discrete": thing(SLEIGH), "momentum": array([0.3, 0.4]), "certify": flag(True)}
-    grown = {"discrete": thing(SLEIGH), "energy": positive(500.0)}
+    sleigh, grown = {"discrete": thing(SLEIGH)}, {"energy": positive(500.0)}
     return [
         *found,
-        call("branches [certified]", nh.branches, **certified),
-        call("branch_growth", nh.branch_growth, **grown),
-        call("branch_growth [certified]", nh.branch_growth, **grown, certify=flag(True)),
+        call("branches [certified]", **sleigh, momentum=array([0.3, 0.4]), certify=flag(True)),
+        call("branch_growth", **sleigh, **grown),
+        call("branch_growth [certified]", **sleigh, **grown, certify=flag(True)),
     ]
 
 
 def _matrices(W: np.ndarray) -> list[Call]:
-    defect, rotation = nh.consistency_defect, array(W, "batch")
-    moments, angles = array([5.0, 4.0, 3.0], "batch"), array([0.0, 0.4, 0.0], "batch")
-    lagrangian = nh.euler_angle_discrete_lagrangian
+    rotation, angles = array(W, "batch"), array([0.0, 0.4, 0.0], "batch")
+    turned = {"principal_moments": array([5.0, 4.0, 3.0], "batch"), "angles": angles, "angles_next": angles}
     return [
-        call("in_exp_d", nh.in_exp_d, displacement=rotation, tolerance=positive(1e-9)),
-        call("trace_constraints", nh.trace_constraints, configuration=rotation, configuration_next=rotation),
-        call(
-            "euler_angle_discrete_lagrangian", lagrangian, principal_moments=moments, angles=angles, angles_next=angles
-        ),
-        call("consistency_defect", defect, discrete=thing(SLEIGH), discretization_map=anything(None), slow=True),
+        call("in_exp_d", displacement=rotation, tolerance=positive(1e-9)),
+        call("trace_constraints", configuration=rotation, configuration_next=rotation),
+        call("euler_angle_discrete_lagrangian", **turned),
+        call("consistency_defect", discrete=thing(SLEIGH), discretization_map=anything(None), slow=True),
     ]

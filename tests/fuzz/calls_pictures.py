@@ -1,25 +1,19 @@
 """Calls that draw pictures; each closes what it has drawn."""
 
 import tempfile
-from collections.abc import Callable
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from fuzz import shelf
-from fuzz.calls import Call, call
+from fuzz.calls import Call, call, closed
 from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
 from fuzz.calls_runs import moving
 from fuzz.kinds import Argument, anything, array, count, flag, function, number, path, positive, text, thing
+from fuzz.marker import turned
 
 import nonholo as nh
 
 mpl.use("agg")
-
-
-def turned(states: nh.Orbit) -> np.ndarray:
-    """Zero where the sleigh looks along the first axis, or back."""
-    return np.sin(states.heading)
 
 
 def calls() -> list[Call]:
@@ -28,17 +22,7 @@ def calls() -> list[Call]:
 
 
 def _drawn(name: str, **arguments: Argument) -> Call:
-    draw: Callable[..., Any] = getattr(nh.plot, name.split(" ", maxsplit=1)[0])
-
-    def and_closed(**given: Any) -> None:
-        import matplotlib.pyplot as plt
-
-        try:
-            draw(**given)
-        finally:
-            plt.close("all")
-
-    return call(f"plot.{name}", and_closed, **arguments, slow=True)
+    return call(f"plot.{name}", closed(getattr(nh.plot, name)), **arguments, slow=True)
 
 
 def _of_orbits() -> list[Call]:
@@ -46,13 +30,9 @@ def _of_orbits() -> list[Call]:
     free = thing(nh.simulate(DISCRETE["free"], body_velocity=(0.3, 0.2, 0.1), steps=6))
     sleigh = thing(nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=6))
     axes, view, flow = anything(None), anything((30.0, 20.0)), anything(None)
-    look = {
-        "title": text("mine", none=True),
-        "label": text("one", none=True),
-        "color": anything("C1"),
-        "size": anything((4.0, 3.0)),
-    }
-    look |= {name: anything(True) for name in ("legend", "annotate", "dark")}
+    look = {"title": text("mine", none=True), "label": text("one", none=True)}
+    look |= {"color": anything("C1"), "size": anything((4.0, 3.0))}
+    look |= dict.fromkeys(("legend", "annotate", "dark"), anything(True))
     movie = {"path": path("new.gif"), "frames": count(2), "fps": positive(5.0)}
     return [
         _drawn("blade_track", orbit=sleigh, axes=axes, flow=flow, enlarge=flag(True)),

@@ -1,34 +1,18 @@
 """Calls that run motions, one or many, and of what comes out of them."""
 
+from typing import Any
+
 import numpy as np
 from fuzz.calls import Call, by_position, call
 from fuzz.calls_maps import DISCRETE, SLEIGH, TOP
 from fuzz.calls_systems import J
-from fuzz.kinds import (
-    Argument,
-    anything,
-    array,
-    count,
-    flag,
-    function,
-    integer,
-    number,
-    path,
-    positive,
-    rule,
-    text,
-    thing,
-)
+from fuzz.kinds import anything, array, count, flag, function, integer, number, path, positive, rule, text, thing
 
 import nonholo as nh
 
-_HOW: dict[str, Argument] = {
-    "branch": rule("principal"),
-    "backend": text("auto"),
-    "reconstruct": flag(True),
-    "throw": flag(True),
-    "progress": flag(False),
-}
+_HOW = {"branch": rule("principal"), "backend": text("auto"), "save_every": count(1)}
+_HOW |= {"reconstruct": flag(True), "throw": flag(True), "progress": flag(False)}
+_TIMES = array([0.0, 0.1, 0.3], "any")
 
 
 def moving(states: nh.Orbit) -> np.ndarray:
@@ -46,30 +30,20 @@ def _velocity(discrete: nh.Discretization) -> np.ndarray:
 
 
 def _runs() -> list[Call]:
-    found = []
-    for name, discrete in DISCRETE.items():
-        given = {"discrete": thing(discrete), "steps": count(5), "restricted_velocity": array(_velocity(discrete))}
-        found += [
-            call(f"simulate [{name}]", nh.simulate, **given, **_HOW, save_every=count(1)),
-            call(f"iterate [{name}]", nh.iterate, **given, block_steps=count(2, none=True)),
-            call(f"flow [{name}]", nh.flow, **_flow(discrete)),
-        ]
     forced = nh.Forced(TOP.system, nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.Friction([0.1, 0.2, 0.3]))
-    velocity = array(_velocity(TOP))
-    given = {"discrete": thing(nh.discretize(forced, 0.1)), "steps": count(5), "restricted_velocity": velocity}
-    found += [
-        call("simulate [forced]", nh.simulate, **given, **_HOW, save_every=count(1)),
-        call("flow [forced]", nh.flow, **_flow(TOP) | {"system": thing(forced)}),
-    ]
+    found = []
+    for name, discrete in {**DISCRETE, "forced": nh.discretize(forced, 0.1)}.items():
+        velocity = array(_velocity(discrete))
+        given = {"discrete": thing(discrete), "steps": count(5), "restricted_velocity": velocity}
+        flow = {"system": thing(discrete.system), "restricted_velocity": velocity, "times": _TIMES}
+        found += [
+            call(f"simulate [{name}]", **given, **_HOW),
+            call(f"iterate [{name}]", **given, block_steps=count(2, none=True)),
+            call(f"flow [{name}]", **flow),
+        ]
     stored = {"store": path("new.zarr", none=True), "checkpoint_every": count(2, none=True)}
-    stored |= {"scenario": text(None, True)}
     given = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
-    return [*found, call("simulate [stored]", nh.simulate, **given, **stored)]
-
-
-def _flow(discrete: nh.Discretization) -> dict[str, Argument]:
-    velocity, times = array(_velocity(discrete)), array([0.0, 0.1, 0.3], "any")
-    return {"system": thing(discrete.system), "restricted_velocity": velocity, "times": times}
+    return [*found, call("simulate [stored]", **given, **stored, scenario=text(None, True))]
 
 
 def _starts() -> list[Call]:
@@ -77,21 +51,21 @@ def _starts() -> list[Call]:
     W = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=1).displacement[0]
     P = nh.discrete_legendre(TOP, W)
     return [
-        call("simulate [body velocity]", nh.simulate, **given, body_velocity=array([0.3, -0.2, 0.0])),
-        call("simulate [displacement]", nh.simulate, **given, displacement=array(W), configuration=array(g)),
-        call("simulate [momentum]", nh.simulate, **given, momentum=array(P)),
-        call("simulate [restricted]", nh.simulate, **given, momentum=array([0.1, 0.2]), events=anything(None)),
+        call("simulate [body velocity]", **given, body_velocity=array([0.3, -0.2, 0.0])),
+        call("simulate [displacement]", **given, displacement=array(W), configuration=array(g)),
+        call("simulate [momentum]", **given, momentum=array(P)),
+        call("simulate [restricted]", **given, momentum=array([0.1, 0.2]), events=anything(None)),
     ]
 
 
 def _flows() -> list[Call]:
-    given, g = {"system": thing(SLEIGH.system), "times": array([0.0, 0.1, 0.3], "any")}, np.eye(3)
+    given, g = {"system": thing(SLEIGH.system), "times": _TIMES}, np.eye(3)
     how = {"rtol": positive(1e-8), "atol": positive(1e-10), "method": text(None, True), "configuration": array(g)}
-    state = array([0.3, 0.4, *np.eye(3).ravel()], "batch")
+    state = array([0.3, 0.4, *g.ravel()], "batch")
     return [
-        call("flow [options]", nh.flow, **given, **how, body_velocity=array([0.3, 0.4, 0.0]), reconstruct=flag(True)),
-        call("flow [momenta]", nh.flow, **given, momentum=array([0.3, 0.4]), reconstruct=flag(False)),
-        call("flow [momentum]", nh.flow, **given, momentum=array([0.3, 0.4])),
+        call("flow [options]", **given, **how, body_velocity=array([0.3, 0.4, 0.0]), reconstruct=flag(True)),
+        call("flow [momenta]", **given, momentum=array([0.3, 0.4]), reconstruct=flag(False)),
+        call("flow [momentum]", **given, momentum=array([0.3, 0.4])),
         call("vector_field", lambda system: nh.vector_field(system), system=thing(SLEIGH.system)),
         call("vector_field [value]", by_position(nh.vector_field(SLEIGH.system)), time=number(0.0), state=state),
     ]
@@ -99,27 +73,24 @@ def _flows() -> list[Call]:
 
 def _ensembles() -> list[Call]:
     starts = np.array([[0.3, -0.2], [0.1, 0.4], [0.2, 0.2]])
-    given: dict[str, Argument] = {"discrete": thing(TOP), "steps": count(5), "save_every": count(1, none=True)}
+    given = {"discrete": thing(TOP), "steps": count(5), "save_every": count(1, none=True)}
     how = {"reconstruct": flag(True), "backend": text("auto"), "progress": flag(False), "events": anything(None)}
-    bodies, each = np.stack([J, J + 0.1 * np.eye(3), J]), nh.ensemble
-    velocity = array(starts, "rows")
-    flows = {"discrete": thing(TOP.system), "times": array([0.0, 0.1, 0.3], "any"), "restricted_velocity": velocity}
-    parameters = lambda mass_tensor, **rest: each(parameters={"mass_tensor": mass_tensor}, **rest)  # noqa: E731
+    bodies, velocity = np.stack([J, J + 0.1 * np.eye(3), J]), array(starts, "rows")
+    flows = {"discrete": thing(TOP.system), "times": _TIMES, "restricted_velocity": velocity}
+    parameters = lambda mass_tensor, **rest: nh.ensemble(parameters={"mass_tensor": mass_tensor}, **rest)  # noqa: E731
     return [
-        call("ensemble", each, **given, restricted_velocity=velocity, parameters=anything(None), **how),
-        call("ensemble [momentum]", each, **given, momentum=velocity, reduce=function(None, none=True)),
-        call("ensemble [flows]", each, **flows, rtol=positive(1e-8), reduce=function(None, none=True)),
+        call("ensemble", **given, restricted_velocity=velocity, parameters=anything(None), **how),
+        call("ensemble [momentum]", **given, momentum=velocity, reduce=function(None, none=True)),
+        call("ensemble [flows]", **flows, rtol=positive(1e-8), reduce=function(None, none=True)),
         call("ensemble [bodies]", parameters, **given, restricted_velocity=array(starts), mass_tensor=array(bodies)),
-        *(
-            call(f"ensemble [{name}]", each, **_members(discrete), save_every=count(2, none=True))
-            for name, discrete in DISCRETE.items()
-        ),
+        *(call(f"ensemble [{name}]", **_members(discrete)) for name, discrete in DISCRETE.items()),
     ]
 
 
-def _members(discrete: nh.Discretization) -> dict[str, Argument]:
-    velocity = np.stack([_velocity(discrete), 0.5 * _velocity(discrete)])
-    return {"discrete": thing(discrete), "steps": count(4), "restricted_velocity": array(velocity, "rows")}
+def _members(discrete: nh.Discretization) -> dict[str, Any]:
+    velocity = array(np.outer([1.0, 0.5], _velocity(discrete)), "rows")
+    often = {"steps": count(4), "save_every": count(2, none=True)}
+    return {"discrete": thing(discrete), "restricted_velocity": velocity, **often}
 
 
 def _results() -> list[Call]:
@@ -132,7 +103,7 @@ def _results() -> list[Call]:
         call("Ensemble.orbit", batch.orbit, member=integer(1)),
         call("Orbit.at", flow.at, times=array([0.0, 0.7], "any")),
         call("Orbit.chosen", orbit.chosen, states=anything(slice(2))),
-        call("Orbit.from_poses", nh.Orbit.from_poses, **poses),
+        call("Orbit.from_poses", **poses),
         call("Orbit.to_csv", orbit.to_csv, path=path("new.csv"), overwrite=flag(False)),
         call("Orbit.to_html", orbit.to_html, path=path("new.html"), overwrite=flag(False)),
         call("explore", by_position(nh.explore), value=thing(orbit)),
@@ -143,18 +114,16 @@ def _results() -> list[Call]:
 
 
 def _events() -> list[Call]:
-    stop, orbit = anything(2), nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=20)
-    event = nh.Event(moving)
+    orbit, event = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=20), nh.Event(moving)
     crossing, sliding = nh.crossings(orbit, event), nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=3)
     with_events = {"discrete": thing(TOP), "steps": count(5), "restricted_velocity": array([0.3, -0.2])}
-    named = {"direction": integer(1), "stop": stop, "name": text("here", none=True)}
+    named = {"direction": integer(1), "stop": anything(2), "name": text("here", none=True)}
+    wall = {"restitution": number(0.5), "point": array([0.0, 0.0], none=True)}
     return [
-        call("Event", nh.Event, function=function(moving), **named),
-        call(
-            "Impact", nh.Impact, normal=array([0.0, 1.0]), restitution=number(0.5), point=array([0.0, 0.0], none=True)
-        ),
-        call("crossings", nh.crossings, orbit=thing(orbit), event=thing(event)),
-        call("crossings [cusp]", nh.crossings, orbit=thing(sliding), event=thing(nh.cusp)),
+        call("Event", function=function(moving), **named),
+        call("Impact", normal=array([0.0, 1.0]), **wall),
+        call("crossings", orbit=thing(orbit), event=thing(event)),
+        call("crossings [cusp]", orbit=thing(sliding), event=thing(nh.cusp)),
         call("Crossings.chosen", crossing.chosen, which=anything(np.arange(0))),
-        call("simulate [events]", nh.simulate, **with_events, events=anything([event])),
+        call("simulate [events]", **with_events, events=anything([event])),
     ]

@@ -26,71 +26,54 @@ def _orbits() -> list[Call]:
     saved = {"path": path("new.zarr"), "overwrite": flag(False), "scenario": text("a = 1", none=True)}
     how = {"throw": flag(True), "progress": flag(False), "trust": flag(False)}
     orbit = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=4)
-    table = nh.io.store_to_csv
     return [
-        call("save_orbit", nh.save_orbit, orbit=thing(orbit), **saved),
-        call("load_orbit", nh.load_orbit, path=store, **other, stores=True),
-        call("resume", nh.resume, store=path(shelf.UNFINISHED), **other, **how, events=anything(None), stores=True),
-        call("resume [sweep]", nh.resume, store=path(shelf.SWEEP_UNFINISHED), task=function(shelf.task), stores=True),
-        call("extend", nh.extend, store=path(shelf.RUN), steps=count(8), **other, **how, stores=True),
-        call("io.store_to_csv", by_position(table), store=store, path=path("new.csv"), stores=True),
+        call("save_orbit", orbit=thing(orbit), **saved),
+        call("load_orbit", path=store, **other, stores=True),
+        call("resume", store=path(shelf.UNFINISHED), **other, **how, events=anything(None), stores=True),
+        call("resume [sweep]", store=path(shelf.SWEEP_UNFINISHED), task=function(shelf.task), stores=True),
+        call("extend", store=path(shelf.RUN), steps=count(8), **other, **how, stores=True),
+        call("io.store_to_csv", by_position(nh.io.store_to_csv), store=store, path=path("new.csv"), stores=True),
     ]
 
 
 def _sweeps() -> list[Call]:
-    design = shelf.DESIGN
     where = {"store": path("new.zarr"), "scheduler": text("synchronous", none=True)}
     how = {"workers": count(1, none=True), "block": count(2, none=True), "resume": flag(False), "progress": flag(False)}
     task = {"discrete": thing(TOP), "steps": count(3), "restricted_velocity": array([0.3, 0.2])}
-    names = {"reductions": anything(["final_state"]), "save_every": count(1, none=True), "reconstruct": flag(True)}
+    names = {"reductions": anything(["final_state"]), "save_every": count(1, none=True)}
     family = {"family": function(_family), "time_step": positive(0.1), "steps": count(3)}
-    family_names = {name: argument for name, argument in names.items() if name != "reconstruct"}
-    family_names |= {"parameters": anything({"a": 2.0})}
     data = {"orbits": count(3), "steps": count(3), "time_step": positive(0.1), "rng": integer(0)}
-    labels = {
-        "noise": number(0.1),
-        "split": array([0.5, 0.25, 0.25]),
-        "file_format": text("csv"),
-        "license_name": text("MIT"),
-    }
-    labels |= {"progress": flag(False)}
+    labels = {"noise": number(0.1), "split": array([0.5, 0.25, 0.25]), "progress": flag(False)}
+    labels |= {"file_format": text("csv"), "license_name": text("MIT")}
     return [
-        call("sweep", nh.sweep, task=function(shelf.task), design=thing(design), **where, **how),
-        call("load_sweep", nh.load_sweep, store=path(shelf.SWEEP), stores=True),
-        call("dataset", nh.dataset, name=text("sleigh"), folder=path("sleighs"), **data, **labels),
-        call("FamilyTask", nh.FamilyTask, **family, **family_names),
-        call("EnsembleTask", nh.EnsembleTask, **task, **names),
+        call("sweep", task=function(shelf.task), design=thing(shelf.DESIGN), **where, **how),
+        call("load_sweep", store=path(shelf.SWEEP), stores=True),
+        call("dataset", name=text("sleigh"), folder=path("sleighs"), **data, **labels),
+        call("FamilyTask", **family, **names, parameters=anything({"a": 2.0})),
+        call("EnsembleTask", **task, **names, reconstruct=flag(True)),
     ]
 
 
 def _designs() -> list[Call]:
-    axis, normal = array([1.0, 2.0], "any"), {"mean": number(0.0), "deviation": positive(1.0)}
+    axis, uniform = array([1.0, 2.0], "any"), nh.Uniform(0.0, 1.0)
     grid = lambda x, y, rng: nh.Grid({"x": x, "y": y}, rng)  # noqa: E731
-    uniform = thing(nh.Uniform(0.0, 1.0))
     drawn = lambda members, x, rng: nh.RandomDesign(members, {"x": x}, rng)  # noqa: E731
-    width = {"low": positive(0.5), "high": positive(2.0)}
     return [
         call("Grid", grid, x=axis, y=array([[0.0, 1.0], [1.0, 2.0]], "any"), rng=integer(0)),
-        call("Grid [axes]", nh.Grid, axes=anything({"x": [1.0]}), rng=integer(0)),
-        call("RandomDesign", drawn, members=count(4), x=uniform, rng=integer(0)),
-        call(
-            "RandomDesign [distributions]",
-            nh.RandomDesign,
-            members=count(4),
-            distributions=anything({"x": nh.Uniform(0.0, 1.0)}),
-        ),
-        call("Uniform", nh.Uniform, low=array(0.0, "any"), high=array(1.0, "any")),
-        call("LogUniform", nh.LogUniform, low=array(0.5, "any"), high=array(1.0, "any")),
-        call("Normal", nh.Normal, **normal, size=count(2, none=True)),
-        call("Direction", nh.Direction, size=count(2), length=positive(1.0)),
-        call("MassTensor", nh.MassTensor, n=count(3), **width),
-        call("Choice", nh.Choice, values=array([1.0, 2.0, 4.0], "any")),
+        call("Grid [axes]", axes=anything({"x": [1.0]}), rng=integer(0)),
+        call("RandomDesign", drawn, members=count(4), x=thing(uniform), rng=integer(0)),
+        call("RandomDesign [distributions]", members=count(4), distributions=anything({"x": uniform})),
+        call("Uniform", low=array(0.0, "any"), high=array(1.0, "any")),
+        call("LogUniform", low=array(0.5, "any"), high=array(1.0, "any")),
+        call("Normal", mean=number(0.0), deviation=positive(1.0), size=count(2, none=True)),
+        call("Direction", size=count(2), length=positive(1.0)),
+        call("MassTensor", n=count(3), low=positive(0.5), high=positive(2.0)),
+        call("Choice", values=array([1.0, 2.0, 4.0], "any")),
     ]
 
 
 def _blocks() -> list[Call]:
-    design = nh.RandomDesign(4, {"x": nh.Uniform(0.0, 1.0)})
-    block = nh.MemberBlock(0, 3, 0, {"x": np.arange(3.0)})
+    design, block = nh.RandomDesign(4, {"x": nh.Uniform(0.0, 1.0)}), nh.MemberBlock(0, 3, 0, {"x": np.arange(3.0)})
     return [
         call("MemberBlock.random", block.random, width=count(2), stream=text("")),
         call("MemberBlock.part", block.part, begin=integer(0), end=integer(2)),

@@ -62,21 +62,21 @@ _DAMAGES: dict[str, Callable[[Path, random.Random], Any]] = {
 def edit_json(store: Path, chance: random.Random) -> str:
     """Remove, replace or add one entry of one JSON file of a store; say what was done."""
     files = [path for path in sorted(store.rglob("*.json")) if _has_entries(path)]
-    main = store / "zarr.json"
-    file = main if chance.random() < 0.6 else chance.choice(files)
+    file = store / "zarr.json" if chance.random() < 0.6 else chance.choice(files)
     data = json.loads(file.read_text())
-    place, where = _drawn(data, chance), ""
+    place, where = chance.choice(list(_places(data))), ""
     parent = data
     for key in place[:-1]:
         parent, where = parent[key], f"{where}.{key}"
     where = f"{file.relative_to(store)} {where}.{place[-1]}"
     if chance.random() < 0.25:
         del parent[place[-1]]
-        _write(file, data)
-        return f"remove {where}"
-    parent[place[-1]] = value = _other(parent[place[-1]], chance)
-    _write(file, data)
-    return f"set {where} = {str(value)[:40]!r}"
+        done = f"remove {where}"
+    else:
+        parent[place[-1]] = value = _other(parent[place[-1]], chance)
+        done = f"set {where} = {str(value)[:40]!r}"
+    file.write_text(json.dumps(data).replace('"deep"', "[" * _DEPTH + "]" * _DEPTH))
+    return done
 
 
 def _has_entries(file: Path) -> bool:
@@ -98,18 +98,9 @@ def _other(value: Any, chance: random.Random) -> Any:
     return chance.choice(HOSTILE)
 
 
-def _drawn(data: Any, chance: random.Random) -> list[Any]:
-    """Return the keys to an entry of nested data."""
-    places = list(_places(data))
-    return chance.choice(places)
-
-
 def _places(data: Any, before: tuple[Any, ...] = ()) -> Any:
+    """Yield the keys to each entry of nested data."""
     entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     for key, value in entries:
         yield [*before, key]
         yield from _places(value, (*before, key))
-
-
-def _write(file: Path, data: Any) -> None:
-    file.write_text(json.dumps(data).replace('"deep"', "[" * _DEPTH + "]" * _DEPTH))

@@ -19,6 +19,11 @@ def options(told: str, **numbers: int) -> argparse.ArgumentParser:
     return parser
 
 
+def counted(rows: dict[str, dict[str, int]]) -> list[str]:
+    """Return a line for each row of counts."""
+    return [f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) for name, row in rows.items()]
+
+
 def report(
     given: argparse.Namespace, figures: Callable[[], dict[str, Any]], lines: Callable[[dict[str, Any]], list[str]]
 ) -> dict[str, Any]:

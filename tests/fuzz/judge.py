@@ -1,8 +1,7 @@
 """Classes of what comes of a trial: what may be, and what may not."""
 
 import dataclasses
-import linecache
-import types
+import traceback
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -41,28 +40,14 @@ def _is_ours(failure: BaseException) -> bool:
 
 
 def _raised_by_us(failure: BaseException) -> bool:
-    frame = _innermost(failure)
-    if frame is None or _OWN_FILES not in frame.tb_frame.f_code.co_filename:
-        return False
-    return linecache.getline(frame.tb_frame.f_code.co_filename, frame.tb_lineno).strip().startswith("raise")
-
-
-def _innermost(failure: BaseException) -> types.TracebackType | None:
-    frame = failure.__traceback__
-    while frame is not None and frame.tb_next is not None:
-        frame = frame.tb_next
-    return frame
+    frames = traceback.extract_tb(failure.__traceback__)
+    return bool(frames) and _OWN_FILES in frames[-1].filename and (frames[-1].line or "").startswith("raise")
 
 
 def _place(failure: BaseException) -> str:
     """Return the last line of ours on the way to a failure."""
-    frame, place = failure.__traceback__, ""
-    while frame is not None:
-        file = frame.tb_frame.f_code.co_filename
-        if _OWN_FILES in file:
-            place = f"{file.rpartition(_OWN_FILES)[2]}:{frame.tb_lineno}"
-        frame = frame.tb_next
-    return place
+    ours = [frame for frame in traceback.extract_tb(failure.__traceback__) if _OWN_FILES in frame.filename]
+    return f"{ours[-1].filename.rpartition(_OWN_FILES)[2]}:{ours[-1].lineno}" if ours else ""
 
 
 def nonfinite(result: Any, *, infinite: bool = False) -> set[str]:

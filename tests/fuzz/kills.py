@@ -6,7 +6,6 @@ numbers must be those of a run that nobody disturbed, to the bit, no file may be
 """
 
 # ruff: noqa: E402
-import argparse
 import hashlib
 import json
 import os
@@ -19,7 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import compilers
@@ -28,32 +27,25 @@ compilers.use_caches()
 
 import numpy as np
 from ensembles import faults
+from fuzz.figures import options
+from fuzz.marker import turned
 
 import nonholo as nh
 from nonholo.io.places import owner_of
 
-
-def east(orbit: nh.Orbit) -> np.ndarray:
-    """Zero where the sleigh looks along the first axis, or back."""
-    return np.sin(orbit.heading)
+Run: TypeAlias = tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]
 
 
-RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]] = {
-    "sleigh": (
-        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3),
-        {"body_velocity": (1.0, 0.3, 0.0), "steps": 60_000, "save_every": 2},
-        None,
-    ),
-    "tumbling body": (
-        nh.discretize(nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), 0.1),
-        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 50_000, "save_every": 2},
-        None,
-    ),
-    "events": (
-        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1),
-        {"body_velocity": (4.0, 1.0, 0.0), "steps": 30_000, "save_every": 5},
-        [nh.Event(east, direction=1)],
-    ),
+def _run(system: Any, time_step: float, *velocity: float, steps: int, save_every: int, events: Any = None) -> Run:
+    run = {"body_velocity": velocity, "steps": steps, "save_every": save_every}
+    return nh.discretize(system, time_step), run, events
+
+
+BODY, EAST = nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), nh.Event(turned, direction=1)
+RUNS: dict[str, Run] = {
+    "sleigh": _run(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3, 1.0, 0.3, 0.0, steps=60_000, save_every=2),
+    "tumbling body": _run(BODY, 0.1, 1.0, -0.4, 0.9, 0.8, -0.7, 0.9, steps=50_000, save_every=2),
+    "events": _run(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1, 4.0, 1.0, 0.0, steps=30_000, save_every=5, events=[EAST]),
 }
 SWEEPS: dict[str, Any] = {
     "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, rng=3), 8),
@@ -107,9 +99,8 @@ def in_a_child(do: Callable[..., Any], *given: Any) -> str:
 
 def kill_in_forks(family: str, name: str, store: Path, chance: random.Random, seconds: float) -> int:
     """Kill a run, perhaps its resume too; return how many were killed before they were over."""
-    kills = sum(
-        _killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(1 + (chance.random() < _AGAIN))
-    )
+    times = 1 + (chance.random() < _AGAIN)
+    kills = sum(_killed(family, name, store, chance.uniform(0.0, seconds)) for _ in range(times))
     in_a_child(go_on, family, name, store)
     return kills
 
@@ -197,20 +188,14 @@ def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) 
     if not can_restart():
         return {**found, "restarts": "skipped: process namespaces may not be made here"}
     halves = (restarts + 1) // 2, restarts // 2
-    restarted = {
-        f"{family}, restarted": figures(family, half, seed, True) for family, half in zip(FAMILIES, halves, strict=True)
-    }
-    return found | restarted
+    shares = zip(FAMILIES, halves, strict=True)
+    return found | {f"{family}, restarted": figures(family, half, seed, True) for family, half in shares}
 
 
 def main() -> int:
     """Kill, resume, compare, print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=20, help="of orbits, and of sweeps")
-    parser.add_argument("--restarts", type=int, default=10, help="in namespaces that end")
-    parser.add_argument("--seed", type=int, default=0)
+    parser = options(__doc__, trials=20, restarts=10)
     parser.add_argument("--only", help="the name of one run or sweep")
-    parser.add_argument("--json", type=Path, help="where the figures are written")
     parser.add_argument("--go-on", nargs=3, metavar=("FAMILY", "NAME", "STORE"), help="what is killed")
     given = parser.parse_args()
     if given.go_on:

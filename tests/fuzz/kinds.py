@@ -56,9 +56,10 @@ def real_array(value: Any, nan: bool = False) -> np.ndarray | None:
     try:
         raw = np.asarray(value)
         if raw.dtype.kind == "O":
-            if not all(
+            allowed = (
                 isinstance(x, numbers.Real | decimal.Decimal) and not isinstance(x, bool | np.generic) for x in raw.flat
-            ):
+            )
+            if not all(allowed):
                 return None
             raw = np.array([float(x) for x in raw.flat]).reshape(raw.shape)
     except (TypeError, ValueError, OverflowError, RecursionError, MemoryError):

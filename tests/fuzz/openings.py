@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import os
 import random
 import shutil
 import tempfile
@@ -34,12 +33,9 @@ class Trial(NamedTuple):
 
 def trials(family: str, kind: str, count: int, seed: int) -> list[Trial]:
     """Return the trials of this many damaged stores: each is opened in every way."""
-    stores = FAMILIES[family]
-    return [
-        Trial(family, stores[i % len(stores)], kind, seed + i, opening)
-        for i in range(count)
-        for opening in _OPENINGS[family]
-    ]
+    stores, openings = FAMILIES[family], _OPENINGS[family]
+    drawn = [(stores[i % len(stores)], kind, seed + i) for i in range(count)]
+    return [Trial(family, *each, opening) for each in drawn for opening in openings]
 
 
 def _info(store: Path) -> dict[str, bytes]:
@@ -133,15 +129,10 @@ def _agree(name: str, found: dict[str, bytes], expected: dict[str, bytes]) -> bo
 @contextlib.contextmanager
 def _beside_others(home: Path, name: str) -> Iterator[Path]:
     """Work in a folder with a copy of a store, and of another one beside it."""
-    before = Path.cwd()
-    with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
-        shutil.copytree(home / name, Path(folder) / name)
-        shutil.copytree(home / shelf.RUN, Path(folder) / "victim.zarr")
-        os.chdir(folder)
-        try:
-            yield Path(folder) / name
-        finally:
-            os.chdir(before)
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as folder, contextlib.chdir(folder):
+        shutil.copytree(home / name, name)
+        shutil.copytree(home / shelf.RUN, "victim.zarr")
+        yield Path(folder) / name
 
 
 def prints_of(folder: Path) -> dict[str, str]:

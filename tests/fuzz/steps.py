@@ -20,7 +20,7 @@ compilers.use_caches()
 
 import numpy as np
 from bodies import mass_tensor, random_rows
-from fuzz.figures import options, report
+from fuzz.figures import counted, options, report
 from fuzz.following import SHARP, Equations, distance, followed, newton
 
 import nonholo as nh
@@ -60,9 +60,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Any]] = {
     **{f"top {n}": lambda rng, n=n: nh.SuslovTop(_tensor(n, rng)) for n in (3, 4, 5, 6, 7)},
     "sleigh": _sleigh,
     **{f"sleigh {n}": _motion(n) for n in (3, 4, 5)},
-    **{
-        f"any d on {group!r}": _any(group) for group in [nh.SO(n) for n in (4, 5, 6, 7)] + [nh.SE(n) for n in (3, 4, 5)]
-    },
+    **{f"any d on {group!r}": _any(group) for group in (*map(nh.SO, (4, 5, 6, 7)), *map(nh.SE, (3, 4, 5)))},
     "free on SO(4)": lambda rng: nh.RigidBody(mass_tensor(nh.SO(4), rng)),
 }
 
@@ -115,9 +113,8 @@ def _directions(system: Any, rng: np.random.Generator) -> np.ndarray:
 
 def _in_units(system: Any, units: float) -> Any:
     """Return the same body in other units of mass."""
-    masses = {
-        name: units * getattr(system, name) for name in ("mass", "inertia", "mass_tensor") if hasattr(system, name)
-    }
+    names = [name for name in ("mass", "inertia", "mass_tensor") if hasattr(system, name)]
+    masses = {name: units * getattr(system, name) for name in names}
     if hasattr(system, "given_inertia"):
         return nh.LLSystem(system.group, masses["mass_tensor"], system.constraint_subspace)
     return dataclasses.replace(system, **masses)
@@ -196,9 +193,8 @@ def figures(steps: int, seed: int, families: tuple[str, ...] = tuple(FAMILIES)) 
         counts: collections.Counter[str] = collections.Counter()
         number = 0
         while counts["steps"] < steps / len(families):
-            found = judge(
-                draw(family, np.random.default_rng([seed, at, number])), np.random.default_rng([seed, number])
-            )
+            case = draw(family, np.random.default_rng([seed, at, number]))
+            found = judge(case, np.random.default_rng([seed, number]))
             if any(found[name] for name in found if name.startswith(("wrong", "not finite", "refused though"))):
                 broken.append({"family": family, "case": [seed, at, number], "counts": dict(found)})
             counts += found
@@ -210,9 +206,7 @@ def figures(steps: int, seed: int, families: tuple[str, ...] = tuple(FAMILIES)) 
 
 def lines(found: dict[str, Any]) -> list[str]:
     """Return figures for people."""
-    rows = {**found["families"], "all": found["all"]}
-    table = [f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items()) for name, row in rows.items()]
-    return table + [f"broken: {row}" for row in found["broken"]]
+    return counted({**found["families"], "all": found["all"]}) + [f"broken: {row}" for row in found["broken"]]
 
 
 def main() -> int:

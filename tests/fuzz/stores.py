@@ -15,7 +15,7 @@ import compilers
 
 compilers.use_caches()
 
-from fuzz.figures import options, report
+from fuzz.figures import counted, options, report
 from fuzz.judge import BROKEN, Verdict
 from fuzz.openings import FAMILIES, KINDS, Trial, trials
 from fuzz.worker import answers
@@ -39,13 +39,9 @@ def figures(chosen: list[Trial], workers: int) -> dict[str, Any]:
 
 def lines(found: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what went wrong."""
-    table = [
-        f"{name}: " + ", ".join(f"{count} {kind}" for kind, count in row.items())
-        for name, row in found["classes"].items()
-    ]
     again = "python tests/fuzz/stores.py --only"
     broken = [f"{x['class']}: {again} '{x['trial']}'\n    {x['what']}\n    {x['message']}" for x in found["broken"]]
-    return [f"{found['openings']} openings", *table, *broken]
+    return [f"{found['openings']} openings", *counted(found["classes"]), *broken]
 
 
 def main() -> int:

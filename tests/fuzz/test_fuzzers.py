@@ -1,6 +1,10 @@
-"""A short share of each fuzzer; the long ones run by `python tests/fuzz`."""
+"""A short share of each fuzzer, and their table of calls, which is whole; the long ones run by `python tests/fuzz`.
+
+That the calls work as long as nothing is changed is seen in `test_light_core`.
+"""
 
 import dataclasses
+import inspect
 import json
 import os
 import random
@@ -11,11 +15,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fuzz import api, judge, kills, openings, shelf, steps, stores
-from fuzz.calls import Call, all_calls
+from fuzz import api, bad, judge, kills, kinds, openings, shelf, steps, stores
+from fuzz.calls import NOT_CALLED, Call, all_calls, is_picture, public_names
 from fuzz.damage import damage_file, edit_json
 from fuzz.following import followed
-from fuzz.kinds import array, number
 from fuzz.trials import draw, from_text, told, verdict
 from fuzz.worker import Worker
 
@@ -83,7 +86,7 @@ class _Found:
 )
 def test_the_judge_tells_classes_apart(function: object, value: str, expected: str) -> None:
     """A function that accepts NaN is silent, one that divides by zero is raw, one that refuses is not."""
-    call = Call("x", function, {"x": number(1.0)})
+    call = Call("x", function, {"x": kinds.number(1.0)})
     assert verdict(call, {"x": value}, set()).kind == expected
 
 
@@ -96,7 +99,7 @@ def test_workers_survive() -> None:
 
 def test_trials_have_names() -> None:
     """A trial is done again from the line that is printed."""
-    calls = {"f [x]": Call("f [x]", print, {"x": array(np.eye(2)), "y": number(1.0)})}
+    calls = {"f [x]": Call("f [x]", print, {"x": kinds.array(np.eye(2)), "y": kinds.number(1.0)})}
     for trial in draw(calls, 50, seed=0):
         assert from_text(told(trial)) == trial
 
@@ -133,3 +136,60 @@ def test_the_continuation_is_that_of_the_definition(family: str) -> None:
     path = followed(equations, r)
     assert path.whole.all()
     np.testing.assert_allclose(path.roots, orbit.displacement, rtol=0, atol=1e-12)
+
+
+@pytest.fixture(name="calls", scope="module")
+def _calls() -> dict[str, Call]:
+    return all_calls()
+
+
+def test_every_public_name_is_called(calls: dict[str, Call]) -> None:
+    """A new public name needs a call, or a reason why there is none."""
+    called = {name.split(" [")[0] for name in calls}
+    missing = [name for name in public_names() if name not in called | NOT_CALLED.keys() and not is_picture(name)]
+    assert not missing
+    assert not NOT_CALLED.keys() & called
+    assert NOT_CALLED.keys() <= set(public_names())
+
+
+def test_every_method_of_a_group_is_called(calls: dict[str, Call]) -> None:
+    """A new method of groups needs a call too."""
+    methods = inspect.getmembers(nh.groups.AbstractMatrixGroup, inspect.isfunction)
+    called = {name.split(".")[1] for name in calls if name.startswith("SO(3).")}
+    assert {name for name, _ in methods if not name.startswith("_")} <= called
+
+
+def test_calls_that_go_on_and_on_end(calls: dict[str, Call]) -> None:
+    """A million million steps block by block are legal: the first blocks are taken."""
+    assert [len(block) for block in calls["iterate [sleigh]"](steps=10**12)][-3:] == [2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("argument", "right", "wrong"),
+    [
+        (kinds.number(1.0), "fraction, -1", "nan, text of a number, datetime64, np.True_, 10**400"),
+        (kinds.positive(1.0), "5e-324", "-1"),
+        (kinds.count(1), "np.int8", "True, 2.0"),
+        (kinds.array(np.eye(3)), "as integers", "masked in part, three of them, one nan, very many of them"),
+        (kinds.array(np.eye(3), "batch"), "three of them", "text"),
+        (kinds.array(np.eye(3), "rows"), "one row less", "text"),
+        (kinds.array(np.ones(2), "stack"), "vector, nan matrix", "one nan"),
+        (kinds.array(np.ones(2), "any"), "vector", "nan matrix"),
+        (kinds.path("a", none=True), "None", "bytes"),
+        (kinds.thing(nh.SO, none=True), "None", "text"),
+        (kinds.flag(True), "False", "text"),
+    ],
+    ids=lambda given: given.kind if isinstance(given, kinds.Argument) else str(given),
+)
+def test_what_is_legal(argument: kinds.Argument, right: str, wrong: str) -> None:
+    """The judge of the fuzzers knows which values may be accepted."""
+    for names, expected in ((right, True), (wrong, False)):
+        for name in names.split(", "):
+            assert kinds.legal(argument, bad.bad_value(name, argument.value)) == expected, name
+
+
+@pytest.mark.parametrize("value", [np.eye(3), np.zeros((2, 0)), np.array(0.5)], ids=["matrix", "empty", "number"])
+def test_every_value_can_be_made(value: np.ndarray) -> None:
+    """No value fails while it is made, whatever it is made of."""
+    for name in bad.names(value):
+        bad.bad_value(name, value)

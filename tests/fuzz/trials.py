@@ -1,7 +1,6 @@
 """One trial of the public API: a call that works, with one or two arguments replaced by values that nobody expects."""
 
 import contextlib
-import os
 import random
 import shutil
 import tempfile
@@ -68,7 +67,6 @@ def prepared() -> Callable[[Trial], Verdict]:
 @contextlib.contextmanager
 def _folder(shelf_: Path | None) -> contextlib.AbstractContextManager[None]:
     """Work in a private folder below another one, with the stores if there are some."""
-    before = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as outside:
         inside = Path(outside) / "in" / "side"
         if shelf_ is None:
@@ -76,11 +74,8 @@ def _folder(shelf_: Path | None) -> contextlib.AbstractContextManager[None]:
         else:
             shutil.copytree(shelf_, inside)
         (inside / "some.txt").write_text("some text")
-        os.chdir(inside)
-        try:
+        with contextlib.chdir(inside):
             yield
-        finally:
-            os.chdir(before)
 
 
 def _has_nan(value: object) -> bool:

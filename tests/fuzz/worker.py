@@ -1,6 +1,7 @@
 """Workers: processes under limits of time and of address space that do one job after another."""
 
 import contextlib
+import dataclasses
 import importlib
 import multiprocessing
 import multiprocessing.connection
@@ -12,24 +13,21 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-SECONDS = 60.0
-ADDRESSES = 16 * 2**30
 
-
+@dataclasses.dataclass
 class Worker:
     """A process that answers jobs by a function of a module, and is started again when it hangs or dies.
 
-    Args:
+    Attributes:
         target: "module:function". The function makes what answers jobs, in the process: it takes long, once.
         seconds: How long a job may take; one that took longer is tried once more, with twice the time.
         addresses: The bytes of address space of the process.
     """
 
-    def __init__(self, target: str, seconds: float = SECONDS, addresses: int = ADDRESSES) -> None:
-        self.target = target
-        self.seconds = seconds
-        self.addresses = addresses
-        self._process: multiprocessing.process.BaseProcess | None = None
+    target: str
+    seconds: float = 60.0
+    addresses: int = 16 * 2**30
+    _process: multiprocessing.process.BaseProcess | None = None
 
     def __enter__(self) -> "Worker":
         self._folder = tempfile.TemporaryDirectory(prefix="fuzz-")  # what a killed process leaves is in it

@@ -7,13 +7,14 @@ nothing of the library is imported here.
 
 import itertools
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from make_discrete_orbits import planar
 from make_general_orbits import homogeneous
-from matrix_algebra import special_euclidean, special_orthogonal, wedge
+from matrix_algebra import algebra, exact, inverse_of, wedge
 from mpmath import mp
 
 mp.dps = 60
@@ -22,16 +23,11 @@ _QUIET = 4  # closed paths without a new root after all were found
 _LOOPS = 300
 
 
-def cayley(Y: Any, eye: Any, inverse: Any) -> tuple[Any, Any]:
-    """Return W = (I - Y)^-1 (I + Y) and (I - Y)^-1."""
+def residual_and_slope(y: Any, D: Any, J: Any, target: Any, inverse: Callable[..., Any] = np.linalg.inv) -> tuple:
+    """Return the equations and their derivative at many points, in float64 or in mpmath numbers."""
+    eye, Y = np.eye(len(J), dtype=int), np.einsum("mi,iab->mab", y, D)
     outer = inverse(eye - Y)
-    return outer @ (eye + Y), outer
-
-
-def residual_and_slope(y: np.ndarray, D: np.ndarray, J: np.ndarray, target: np.ndarray) -> tuple:
-    """Return the equations and their derivative at many points, in float64."""
-    eye = np.eye(len(J))
-    W, outer = cayley(np.einsum("mi,iab->mab", y, D), eye, np.linalg.inv)
+    W = outer @ (eye + Y)
     arms = (D @ J).reshape(len(D), -1).T
     f = (W - eye).reshape(len(y), J.size) @ arms - target
     dW = 2 * outer[:, None] @ D @ outer[:, None]
@@ -78,35 +74,25 @@ def all_roots(D: np.ndarray, J: np.ndarray, target: np.ndarray, count: int) -> l
     return roots
 
 
-def refined(y: np.ndarray, D: list, J: Any, target: list) -> list:
+def refined(y: np.ndarray, D: Any, J: Any, target: Any) -> list:
     """Return the root to 50 digits."""
-    k, N = len(D), J.rows
-    mats, eye = [mp.matrix(d) for d in D], mp.eye(N)
-    y = mp.matrix([mp.mpmathify(complex(v)) for v in y])
+    root = np.array([mp.mpmathify(complex(v)) for v in y])
     for _ in range(4):
-        Y = sum((y[i] * mats[i] for i in range(k)), mp.zeros(N))
-        W, outer = cayley(Y, eye, lambda x: x**-1)
-
-        def pairing(i: int, X: Any) -> Any:
-            return sum(mats[i][a, b] * (J * X.T)[b, a] for a in range(N) for b in range(N) if mats[i][a, b] != 0)
-
-        f = mp.matrix([pairing(i, W - eye) - target[i] for i in range(k)])
-        columns = [2 * outer * mats[j] * outer for j in range(k)]
-        slope = mp.matrix([[pairing(i, columns[j]) for j in range(k)] for i in range(k)])
-        step = mp.lu_solve(slope, f)
-        y = y - step
-    if mp.norm(step) > mp.mpf(10) ** -50 * (1 + mp.norm(y)):
+        f, slope = residual_and_slope(root[None], D, J, target, lambda matrices: inverse_of(matrices[0])[None])
+        step = inverse_of(slope[0]) @ f[0]
+        root = root - step
+    if np.abs(step).max() > mp.mpf(10) ** -50 * (1 + np.abs(root).max()):
         raise ArithmeticError("not converged")
-    return [[float(v.real), float(v.imag)] for v in y]
+    return [[float(v.real), float(v.imag)] for v in root]
 
 
-def case(kind: str, parameters: dict, J: np.ndarray, D: list, h: float, r: list[float], count: int) -> dict:
+def case(kind: str, parameters: dict, J: Any, D: Any, h: float, r: list[float], count: int) -> dict:
     """Return one case: a system, a momentum and the Cayley coordinates of every displacement over it."""
-    target = [mp.mpf(h) * mp.mpf(v) for v in r]
-    rough = all_roots(np.array(D, dtype=float), np.array(J, dtype=float), np.array(target, dtype=float), count)
-    exact = [refined(y, D, mp.matrix(J), target) for y in rough]
-    print(kind, len(J), "real:", sum(all(abs(v[1]) < 1e-30 for v in y) for y in exact), flush=True)
-    return {"system": kind, "parameters": parameters, "time_step": h, "momentum": r, "roots": exact}
+    J, D, target = exact(J), exact(D), exact(h) * exact(r)
+    rough = all_roots(*(given.astype(float) for given in (D, J, target)), count)
+    roots = [refined(y, D, J, target) for y in rough]
+    print(kind, len(J), "real:", sum(all(abs(v[1]) < 1e-30 for v in y) for y in roots), flush=True)
+    return {"system": kind, "parameters": parameters, "time_step": h, "momentum": r, "roots": roots}
 
 
 def tensor(n: int, rng: np.random.Generator) -> list[list[float]]:
@@ -118,8 +104,7 @@ def tensor(n: int, rng: np.random.Generator) -> list[list[float]]:
 def top(n: int, rng: np.random.Generator) -> dict:
     """Return a Suslov top."""
     J, k = tensor(n, rng), n - 1
-    basis = special_orthogonal(n)
-    D = [basis[1], [[-x for x in row] for row in basis[0]]] if n == 3 else [wedge(i, k, n) for i in range(k)]
+    D = [algebra("SO(3)")[1], -algebra("SO(3)")[0]] if n == 3 else [wedge(i, k, n) for i in range(k)]
     r = (rng.choice([0.3, 1.0]) * rng.normal(size=k)).round(4).tolist()
     return case("top", {"mass_tensor": J}, J, D, 0.5, r, 2 * k)
 
@@ -128,9 +113,9 @@ def sleigh(a: float, b: float, pi: float, phat: float) -> dict:
     """Return a Chaplygin sleigh with m = 1.5, J = 1 at a point of the plane of the deltoid."""
     m = 1.5
     p1 = (phat - 2 * m * a * a) / a
-    J = homogeneous(planar(m, 1.0, a, b)).astype(float).tolist()
+    J = homogeneous(planar(m, 1.0, a, b)).astype(float)
     parameters = {"mass": m, "inertia": 1.0, "a": a, "b": b}
-    return case("sleigh", parameters, J, special_euclidean(2)[:2], 1.0, [pi - b * p1, p1], 3)
+    return case("sleigh", parameters, J, algebra("SE(2)")[:2], 1.0, [pi - b * p1, p1], 3)
 
 
 def motion(n: int, rng: np.random.Generator) -> dict:
@@ -138,9 +123,7 @@ def motion(n: int, rng: np.random.Generator) -> dict:
     Jc, a, m = tensor(n, rng), rng.normal(size=n).round(3), 1.5
     lever = np.append(a, 1.0)
     J = np.pad(np.array(Jc), ((0, 1), (0, 1))) + m * np.outer(lever, lever)
-    D = [wedge(0, j, n) for j in range(1, n)]
-    D = [[*([*row, 0] for row in d), [0] * (n + 1)] for d in D]
-    D.append([[int((i, j) == (0, n)) for j in range(n + 1)] for i in range(n + 1)])
+    D = [*(wedge(0, j, n + 1) for j in range(1, n)), algebra(f"SE({n})")[-n]]
     parameters = {"mass": m, "center_of_mass": a.tolist(), "mass_tensor": Jc}
     r = (0.4 * rng.normal(size=n)).round(4).tolist()
     return case("motion", parameters, J.tolist(), D, 0.5, r, 2 * n - 1)

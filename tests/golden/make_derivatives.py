@@ -10,27 +10,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import make_general_orbits as orbits
 import numpy as np
 from make_discrete_orbits import planar
-from make_general_orbits import (
-    DIGITS,
-    MIXED_ANNIHILATOR,
-    MIXED_SUBSPACE,
-    Array,
-    Equations,
-    adjoint,
-    derivative,
-    displacement,
-    exact,
-    homogeneous,
-    momentum,
-    principal,
-    refined,
-    remaining,
-    solve,
-    suslov_rows,
-)
-from matrix_algebra import SE2, decimals, inertia_operator, special_euclidean, special_orthogonal, write_cases
+from make_general_orbits import adjoint, displacement, homogeneous, momentum, remaining, suslov_rows
+from matrix_algebra import Array, algebra, decimals, exact, inertia_operator, inverse_of, write_cases
 from mpmath import mp, mpf
 
 STEPS = 4
@@ -85,19 +69,19 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
     others, gains = np.split(others, [len(case.friction) + len(case.weight)])
     basis, rows = exact(case.basis), exact(case.rows)
     skew = exact(int(case.skew))
-    equations = Equations(basis, tensor, exact(h), rows, exact(case.annihilator).reshape(-1, len(basis)), skew)
-    inertia = exact(inertia_operator(case.basis, tensor.tolist()))
-    r, g = rows @ inertia @ rows.T @ velocity, exact(np.eye(len(tensor), dtype=int).tolist())
-    to_velocity = np.array(mp.inverse(mp.matrix((rows @ inertia @ rows.T).tolist())).tolist())
+    equations = orbits.Equations(basis, tensor, exact(h), rows, exact(case.annihilator).reshape(-1, len(basis)), skew)
+    inertia = inertia_operator(basis, tensor)
+    r, g = rows @ inertia @ rows.T @ velocity, exact(np.eye(len(tensor)))
+    to_velocity = inverse_of(rows @ inertia @ rows.T)
     for step in range(STEPS):
         control = controls[step] if len(controls) else exact([0] * size)
         if case.gains:
             control = steering(gains, (g, to_velocity @ r), h * step)
         pushed = kicked(case, (rows, basis, to_velocity), (r, g), (control, others), h / 2)
         if step == len(roots):
-            x = solve(equations, pushed, principal(equations, pushed))
-            roots.append((x, np.linalg.inv(derivative(equations.rounded(), x.astype(float)))))
-        x = refined(equations, pushed, roots[step])
+            x = orbits.solve(equations, pushed, orbits.principal(equations, pushed))
+            roots.append((x, np.linalg.inv(orbits.derivative(equations.rounded(), x.astype(float)))))
+        x = orbits.refined(equations, pushed, roots[step])
         w = displacement(basis, x)
         g = g @ w
         arriving = rows @ adjoint(basis, w, displacement(basis, -x)).T @ momentum(equations, w)
@@ -142,7 +126,7 @@ def make_case(case: Case) -> dict[str, Any]:
     given = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
     given |= {"friction": case.friction, "weight": case.weight} if case.friction else {}
     given |= {"gains": case.gains} if case.gains else {}
-    found = {"end": decimals(here.tolist()), "derivative": decimals(np.array(rows).tolist())}
+    found = {"end": decimals(here), "derivative": decimals(rows)}
     return {"name": case.name, "steps": STEPS, **given, **found}
 
 
@@ -156,15 +140,15 @@ TILTED_ROWS, TILTED_AXIS = [[0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], [[0.6, 0.0, 0.8]
 
 def cases() -> list[Case]:
     """Return seven bodies, each in motion and at rest, where the displacement is the identity, and a closed loop."""
-    so3, so4, se3 = special_orthogonal(3), special_orthogonal(4), special_euclidean(3)
+    so3, so4, se3, se2 = map(algebra, ("SO(3)", "SO(4)", "SE(3)", "SE(2)"))
     pushes = [[0.3, -0.5, 0.2], [-0.4, 0.6, 0.1], [0.2, 0.3, -0.3], [0.5, -0.1, 0.4]]
-    plane = SE2, [[1, 0, 0], [0, 1, 0]], [[0, 0, 1]], SLEIGH
+    plane = se2, [[1, 0, 0], [0, 1, 0]], [[0, 0, 1]], SLEIGH
     moving = [
         Case("top", so3, suslov_rows(3), remaining(suslov_rows(3)), TOP, [0.9, -0.4], [], False),
         Case("tilted top", so3, TILTED_ROWS, TILTED_AXIS, TILTED, [0.5, 0.6], [], False),
         Case("sleigh", *plane, [0.8, -0.5], [], False),
         Case("four", so4, suslov_rows(4), remaining(suslov_rows(4)), FOUR, [0.5, -0.4, 0.3], [], False),
-        Case("mixed", se3, MIXED_SUBSPACE, MIXED_ANNIHILATOR, MIXED, [0.3, -0.2, 0.25], [], True),
+        Case("mixed", se3, orbits.MIXED_SUBSPACE, orbits.MIXED_ANNIHILATOR, MIXED, [0.3, -0.2, 0.25], [], True),
         Case("driven sleigh", *plane, [0.8, -0.5], pushes, False),
         Case("heavy sleigh", *plane, [0.8, -0.5], pushes, False, 0.3, (0.3, 0.2, 0.1), (0.4, -1.0, 0.5, 0.3)),
     ]
@@ -177,7 +161,7 @@ def cases() -> list[Case]:
 
 def main() -> None:
     """Write derivatives.json beside this script."""
-    mp.dps = DIGITS
+    mp.dps = orbits.DIGITS
     write_cases(Path(__file__).with_name("derivatives.json"), [make_case(case) for case in cases()])
 
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from make_discrete_orbits import ALIGNED, FLAT, GENERIC, OTHER, case_of
-from make_general_orbits import DIGITS, Array, coordinates, exact, group_defect, homogeneous, inverse_of
+from make_general_orbits import DIGITS, group_defect, homogeneous
 from make_linear_forces import BITS, STEPS, Motion
-from matrix_algebra import decimals, inertia_operator, require, write_cases
+from matrix_algebra import algebra, coordinates, decimals, exact, inertia_operator, inverse_of, require, write_cases
 from mpmath import mp, mpf
 
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 10.0]
@@ -31,21 +31,20 @@ BODIES: list[tuple[str, Any, list[float]]] = [  # name, mass tensor or (mass, in
 ]
 
 
-def table(case: Any, unit: int) -> dict[str, Array]:
+def table(case: Any, unit: int) -> dict[str, Any]:
     """Return the columns of the file and the energy, by steps, this many a unit of time."""
-    basis, n, tensor = exact(case.basis()), case.n, homogeneous(case.parameters)
-    nothing = [0.0] * n
-    motion = Motion(("", case.group, tensor.tolist(), case.subspace, [], nothing, nothing, []))
+    basis, tensor, nothing = exact(algebra(case.group)), homogeneous(case.parameters), [0.0] * case.n
+    motion = Motion(("", case.group, tensor, case.constraint_subspace, [], nothing, nothing, []))
     every = [k / unit for k in range(int(TIMES[-1] * unit) + 1)]
     found = motion.solved(case.restricted_velocity, unit, every)
     states = [[exact(number.tolist()) * mp.ldexp(1, -BITS) for number in state] for state in found]
-    inertia = exact(inertia_operator(case.basis(), tensor.tolist()))
+    inertia = inertia_operator(basis, tensor)
     turns = [mpf(0)]
     for (_, before), (_, after) in pairwise(states):
         moved = before.T[:2, :2] @ after[:2, :2]
         turns.append(turns[-1] + mp.atan2(moved[1, 0], moved[0, 0]))
     chosen = [every.index(t) for t in TIMES]
-    velocities = np.array([states[k][0] for k in chosen]) @ exact(case.subspace)
+    velocities = np.array([states[k][0] for k in chosen]) @ exact(case.constraint_subspace)
     poses, momenta = exact(case.configuration) @ np.array([states[k][1] for k in chosen]), velocities @ inertia
     reaction = inverse_of(inertia) @ exact(case.annihilator[0])
     hats = np.tensordot(velocities, basis, axes=1)[:, None]
@@ -72,7 +71,7 @@ def made(name: str, body: Any, velocity: list[float]) -> dict[str, Any]:
         require(defect, f"{name} {what}", mpf(10) ** -45)
     print(name, *(mp.nstr(mpf(defect), 2) for defect in defects.values()), flush=True)
     told |= {"body_velocity": velocity, "configuration": case.configuration, "times": TIMES}
-    return told | {key: decimals(found[key].tolist()) for key in found if key != "energy"}
+    return told | {key: decimals(found[key]) for key in found if key != "energy"}
 
 
 def main() -> None:

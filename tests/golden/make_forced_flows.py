@@ -76,13 +76,11 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
     entries = (body["inertia"][i][j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
     rigid = mechanics.RigidBody("R", center, frame, body["mass"], (mechanics.inertia(frame, *entries), center))
     covector = sympy.Matrix([lam]) * sympy.Matrix(body["held"])
-    forces = {
-        "weight": lambda: vector(WEIGHT, space),
-        "spring": lambda: -STIFFNESS * (point.pos_from(origin) - vector(ANCHOR, space)),
-    }
-    loads = [(point, force()) for name, force in forces.items() if name in acting]
+    spring = -STIFFNESS * (point.pos_from(origin) - vector(ANCHOR, space))
+    forces = {"weight": vector(WEIGHT, space), "spring": spring}
+    loads = [(point, force) for name, force in forces.items() if name in acting]
     if "friction" in acting:
-        covector -= moving * sympy.Matrix(FRICTION).T
+        covector -= moving * sympy.Matrix(FRICTION.tolist()).T
     if "drive" in acting:
         covector += sympy.Matrix([drive(moving, TIME, sympy.cos)])
     loads += [(frame, vector(covector[:3])), (place, vector(covector[3:]))]
@@ -95,9 +93,8 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
     reaction = kane.auxiliary_eqs.subs({u.diff(dot): r for u, r in zip(speeds, changes, strict=True)})
     moved = sympy.Matrix([known[x.diff(dot)] for x in coordinates])
     free = dict.fromkeys(lam, 0)
-    moved, mass, forcing, reaction = (
-        m.subs(known).subs(plain) for m in (moved, kane.mass_matrix, kane.forcing, reaction)
-    )
+    matrices = moved, kane.mass_matrix, kane.forcing, reaction
+    moved, mass, forcing, reaction = (each.subs(known).subs(plain) for each in matrices)
     field = sympy.lambdify([names, TIME], [moved, mass, forcing.subs(free)], cse=True)
     held = sympy.lambdify([names, changes, TIME], [reaction.jacobian(lam), reaction.subs(free)], cse=True)
     turned = sympy.lambdify([names], space.dcm(frame).subs(plain), cse=True)
@@ -121,15 +118,10 @@ def solved(name: str) -> dict[str, Any]:
     start = np.concatenate([np.zeros(size), velocity])
     found = solve_ivp(rate, (0.0, TIMES[-1]), start, "DOP853", TIMES, rtol=1e-13, atol=1e-15).y.T
     lam = [multipliers(time, y) for time, y in zip(TIMES, found, strict=True)]
-    return {
-        "name": name,
-        "body": body,
-        "acting": acting,
-        "body_velocities": (found[:, -k:] @ np.array(body["free"])).tolist(),
-        "reactions": (np.array(lam) @ np.array(body["held"])).tolist(),
-        "rotations": [np.asarray(turned(y)).tolist() for y in found],
-        "places": found[:, 3:size].tolist(),
-    }
+    velocities, reactions = found[:, -k:] @ np.array(body["free"]), np.array(lam) @ np.array(body["held"])
+    columns = {"body_velocities": velocities, "reactions": reactions}
+    columns |= {"rotations": np.array([turned(y) for y in found]), "places": found[:, 3:size]}
+    return {"name": name, "body": body, "acting": acting} | {key: rows.tolist() for key, rows in columns.items()}
 
 
 def main() -> None:

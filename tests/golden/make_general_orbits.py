@@ -12,24 +12,11 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+import matrix_algebra
 import numpy as np
-from matrix_algebra import (
-    Matrix,
-    Number,
-    decimals,
-    exponential,
-    identity,
-    inertia_operator,
-    require,
-    special_euclidean,
-    special_orthogonal,
-    wedge,
-    write_cases,
-)
+from matrix_algebra import Array, Number, algebra, coordinates, decimals, exact, inertia_operator, inverse_of, require
 from mpmath import mp, mpf
 from scipy.linalg import expm
-
-Array = Any  # a NumPy array of mpmath numbers (dtype object) or of float64
 
 STEPS = 20
 DIGITS = 60
@@ -69,7 +56,7 @@ class Case:
     name: str
     group: str
     parameters: dict[str, Any]
-    subspace: list[list[Number]]
+    constraint_subspace: list[list[Number]]
     annihilator: list[list[Number]]
     constraint: str
     time_step: float
@@ -81,23 +68,14 @@ class Case:
         """The dimension of the space that the body turns in."""
         return len(self.configuration) - (self.group[1] == "E")
 
-    def basis(self) -> list[Matrix]:
-        """Return the basis of the algebra."""
-        return special_orthogonal(self.n) if self.group[1] == "O" else special_euclidean(self.n)
-
     def equations(self) -> Equations:
         """Return the equations in mpmath numbers; the constraint rows are those at the identity."""
-        basis = exact(self.basis())
-        rows = exact(self.subspace).reshape(-1, len(basis))
+        basis = exact(algebra(self.group))
+        rows = exact(self.constraint_subspace).reshape(-1, len(basis))
         annihilator = exact(self.annihilator).reshape(-1, len(basis))
         # Suslov tops, sleighs and Veselova tops are symmetric pairs: exp d, verified afterwards to be skew too
         skew = exact(int(self.system == "left_invariant" and self.constraint == "skew"))
         return Equations(basis, homogeneous(self.parameters), exact(self.time_step), rows, annihilator, skew)
-
-
-def exact(nested: Any) -> Array:
-    """Turn nested lists of floats or ints into an array of the same numbers in mpmath."""
-    return np.vectorize(mpf, otypes=[object])(np.array(nested, dtype=object)) if np.size(nested) else np.array(nested)
 
 
 def homogeneous(parameters: dict[str, Any]) -> Array:
@@ -111,17 +89,10 @@ def homogeneous(parameters: dict[str, Any]) -> Array:
     return moved
 
 
-def coordinates(basis: Array, x: Array) -> Array:
-    """Return the coordinates of a matrix, or of a stack of matrices, in an orthogonal basis."""
-    flat = basis.reshape(len(basis), -1)
-    found = x.reshape(*x.shape[:-2], -1) @ flat.T
-    return found / (flat * flat).sum(axis=1)
-
-
 def displacement(basis: Array, x: Array) -> Array:
     """Return expm of the algebra element with coordinates x."""
     element = np.tensordot(x, basis, axes=1)
-    return exact(exponential(element.tolist())) if element.dtype == object else expm(element)
+    return matrix_algebra.exponential(element) if element.dtype == object else expm(element)
 
 
 def momentum(equations: Equations, w: Array) -> Array:
@@ -133,11 +104,6 @@ def momentum(equations: Equations, w: Array) -> Array:
 def adjoint(basis: Array, w: Array, inverse: Array) -> Array:
     """Return the matrix of Ad_W; its transpose is that of Ad*_W."""
     return coordinates(basis, w @ basis @ inverse).T
-
-
-def inverse_of(g: Array) -> Array:
-    """Return the inverse matrix."""
-    return exact((mp.matrix(g.tolist()) ** -1).tolist())
 
 
 def inclination(equations: Equations, x: Array) -> Array:
@@ -246,7 +212,7 @@ def orbit(case: Case, verify: bool) -> dict[str, list[Any]]:
     """Return logarithms, displacements, momenta, multipliers, configurations and energies."""
     equations = case.equations()
     basis = equations.basis
-    inertia = exact(inertia_operator(case.basis(), equations.mass_tensor.tolist()))
+    inertia = inertia_operator(basis, equations.mass_tensor)
     g = start(case)
     here = at(case, equations, g)
     target = here.rows @ inertia @ here.rows.T @ exact(case.restricted_velocity)
@@ -275,9 +241,7 @@ def orbit(case: Case, verify: bool) -> dict[str, list[Any]]:
 
 def group_defect(n: int, g: Array) -> Number:
     """Return how far g is from SO(n) or SE(n)."""
-    size = len(g)
-    block = g[:n, :n]
-    rest = g[n:] - exact(identity(size))[n:]
+    block, rest = g[:n, :n], g[n:] - np.eye(len(g), dtype=int)[n:]
     defects = [*(block @ block.T - np.eye(n, dtype=int)).ravel(), *rest.ravel(), mp.det(mp.matrix(block.tolist())) - 1]
     return max(abs(defect) for defect in defects)
 
@@ -366,41 +330,25 @@ def make_case(case: Case) -> dict[str, Any]:
         pairs = zip(found["configurations"], found["displacement"], strict=True)
         found["spatial_displacement"] = [g @ w @ inverse_of(g) for g, w in pairs]
     del found["logarithm"]
-    entry = {
-        "system": case.system, "name": case.name, "group": case.group, "parameters": case.parameters,
-        "constraint_subspace": case.subspace, "annihilator": case.annihilator, "constraint": case.constraint,
-        "time_step": case.time_step, "restricted_velocity": case.restricted_velocity,
-        "configuration": case.configuration,
-    }  # fmt: skip
-    return entry | {key: decimals(np.array(value).tolist()) for key, value in found.items()}
-
-
-def unit_rows(size: int, chosen: list[int]) -> list[list[int]]:
-    """Return coordinate covectors."""
-    return [identity(size)[index] for index in chosen]
-
-
-def wedge_rows(n: int, pairs: list[tuple[int, int]]) -> list[list[int]]:
-    """Return the coordinates of e_i ^ e_j in so(n)."""
-    basis = np.array(special_orthogonal(n))
-    return [coordinates(basis, np.array(wedge(i, j, n))).astype(int).tolist() for i, j in pairs]
+    return vars(case) | {key: decimals(value) for key, value in found.items()}
 
 
 def remaining(rows: list[list[int]]) -> list[list[int]]:
     """Return the coordinate covectors that vanish on rows made of plus or minus unit vectors."""
-    size = len(rows[0])
-    return unit_rows(size, [index for index in range(size) if not any(row[index] for row in rows)])
+    return np.eye(len(rows[0]), dtype=int)[~np.any(rows, axis=0)].tolist()
 
 
 def suslov_rows(n: int) -> list[list[int]]:
     """Return e_i ^ e_n, i = 1..n-1."""
-    return wedge_rows(n, [(i, n - 1) for i in range(n - 1)])
+    turns = np.array([matrix_algebra.wedge(i, n - 1, n) for i in range(n - 1)])
+    return coordinates(algebra(f"SO({n})"), turns).astype(int).tolist()
 
 
 def sleigh_rows(n: int) -> list[list[int]]:
     """Return e_1 ^ e_j, j = 2..n, then v1."""
-    turns = [row + [0] * n for row in wedge_rows(n, [(0, j) for j in range(1, n)])]
-    return turns + unit_rows(len(turns[0]), [n * (n - 1) // 2])
+    basis = algebra(f"SE({n})")
+    motions = np.array([*(matrix_algebra.wedge(0, j, n + 1) for j in range(1, n)), basis[-n]])
+    return coordinates(basis, motions).astype(int).tolist()
 
 
 def draw_tensor(draw: np.random.RandomState, size: int) -> list[list[float]]:
@@ -426,26 +374,22 @@ def draw_configuration(draw: np.random.RandomState, n: int, size: int) -> list[l
     return g.tolist()
 
 
+def symmetric(system: str, group: str, rows: list[list[int]], *runs: tuple[float, float]) -> tuple[Any, ...]:
+    """Return a problem whose subspace is spanned by elements of the basis."""
+    return system, group, "skew", rows, remaining(rows), [*runs]
+
+
 # system, group, constraint, rows, annihilator, (time step, degrees a step of the drawn velocity) ...
-PROBLEMS: list[tuple[str, str, str, Any, Any, list[tuple[float, float]]]] = [
-    *(
-        ("suslov", f"SO({n})", "skew", suslov_rows(n), remaining(suslov_rows(n)), [(0.1, 38.0), (0.5, 33.0)])
-        for n in (4, 6, 10)
-    ),
-    *(
-        ("sleigh", f"SE({n})", "skew", sleigh_rows(n), remaining(sleigh_rows(n)), [(0.1, 28.0), (0.5, 32.0)])
-        for n in (3, 5)
-    ),
+PROBLEMS: list[tuple[Any, ...]] = [
+    *(symmetric("suslov", f"SO({n})", suslov_rows(n), (0.1, 38.0), (0.5, 33.0)) for n in (4, 6, 10)),
+    *(symmetric("sleigh", f"SE({n})", sleigh_rows(n), (0.1, 28.0), (0.5, 32.0)) for n in (3, 5)),
     ("left_invariant", "SE(3)", "skew", MIXED_SUBSPACE, MIXED_ANNIHILATOR, [(0.1, 30.0), (0.5, 28.0)]),
     ("left_invariant", "SE(3)", "exponential", MIXED_SUBSPACE, MIXED_ANNIHILATOR, [(0.5, 25.0)]),
-    *(
-        ("veselova", f"SO({n})", "skew", suslov_rows(n), remaining(suslov_rows(n)), [(0.1, 30.0), (0.5, 25.0)])
-        for n in (3, 4)
-    ),
-    ("rigid_body", "SO(3)", "skew", identity(3), [], [(0.1, 40.0), (0.5, 35.0)]),
-    ("rigid_body", "SO(4)", "skew", identity(6), [], [(0.1, 38.0), (0.5, 33.0)]),
-    ("rigid_body", "SE(2)", "skew", identity(3), [], [(0.5, 30.0)]),
-    ("rigid_body", "SE(3)", "skew", identity(6), [], [(0.1, 30.0)]),
+    *(symmetric("veselova", f"SO({n})", suslov_rows(n), (0.1, 30.0), (0.5, 25.0)) for n in (3, 4)),
+    symmetric("rigid_body", "SO(3)", np.eye(3, dtype=int).tolist(), (0.1, 40.0), (0.5, 35.0)),
+    symmetric("rigid_body", "SO(4)", np.eye(6, dtype=int).tolist(), (0.1, 38.0), (0.5, 33.0)),
+    symmetric("rigid_body", "SE(2)", np.eye(3, dtype=int).tolist(), (0.5, 30.0)),
+    symmetric("rigid_body", "SE(3)", np.eye(6, dtype=int).tolist(), (0.1, 30.0)),
 ]
 
 
@@ -462,9 +406,8 @@ def cases() -> list[Case]:
     found = []
     for seed, (system, group, constraint, rows, annihilator, runs) in enumerate(PROBLEMS):
         draw = np.random.RandomState(seed)
-        n, euclidean = int(group[3:-1]), group[1] == "E"
-        basis = np.array(special_euclidean(n) if euclidean else special_orthogonal(n))
-        size = n + euclidean
+        n, basis = int(group[3:-1]), algebra(group)
+        size = len(basis[0])
         parameters = draw_parameters(draw, system, n, size)
         for h, turn in runs:
             velocity = draw_velocity(draw, basis, np.array(rows), turn / h)
@@ -478,7 +421,7 @@ def cases() -> list[Case]:
 
 def require_no_symmetric_pair() -> None:
     """Raise if [[d, d], d] lies in d for the mixed subspace, or if its annihilator does not vanish on it."""
-    basis = np.array(special_euclidean(3), dtype=float)
+    basis = algebra("SE(3)")
     d = np.tensordot(np.array(MIXED_SUBSPACE), basis, axes=1)
     triple = [(a @ b - b @ a) @ c - c @ (a @ b - b @ a) for a in d for b in d for c in d]
     outside = coordinates(basis, np.array(triple)) @ np.array(MIXED_ANNIHILATOR).T
@@ -490,7 +433,7 @@ def main() -> None:
     """Write general_orbits.json beside this script."""
     mp.dps = DIGITS
     require_no_symmetric_pair()
-    write_cases(Path(__file__).with_name("general_orbits.json"), [make_case(case) for case in cases()])
+    matrix_algebra.write_cases(Path(__file__).with_name("general_orbits.json"), [make_case(case) for case in cases()])
 
 
 if __name__ == "__main__":

@@ -12,16 +12,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from matrix_algebra import (
-    combine,
-    coordinates,
-    decimals,
-    inertia_operator,
-    require,
-    special_euclidean,
-    special_orthogonal,
-    write_cases,
-)
+from matrix_algebra import algebra, coordinates, decimals, exact, inertia_operator, inverse_of, require, write_cases
 from mpmath import mp, mpf
 
 BITS, ORDER, STEPS = 220, 72, (8, 16)  # digits, terms, and steps a unit of time
@@ -60,29 +51,16 @@ class Motion:
     def __init__(self, case: tuple[Any, ...]) -> None:
         """Prepare them in 80 digits."""
         _, group, tensor, rows, _, F, point, C = case
-        n, affine = int(group[3]), group[1] == "E"
-        basis = special_euclidean(n) if affine else special_orthogonal(n)
-        inertia = mp.matrix(inertia_operator(basis, [[mpf(x) for x in row] for row in tensor]))
-        S, force, place = mp.matrix(rows), [*F, *[0] * affine], [*point, *[1] * affine]
-        matrices = [mp.matrix(combine([mpf(c) for c in row], basis)) for row in rows]
-        inverse = (S * inertia * S.T) ** -1
-        momenta = inertia * S.T
-        k, dim = len(rows), len(basis)
-        T = np.zeros((k, k, k), dtype=object)
-        for a in range(k):
-            for i in range(k):
-                X, Y = matrices[a], matrices[i]
-                bracket = mp.matrix(coordinates(basis, (X * Y - Y * X).tolist()))
-                T[a, :, i] = list(bracket.T * momenta)
-        back = np.array(inverse.tolist(), dtype=object)
-        self.torques = whole(T @ back)
-        friction = (mp.matrix(C) if np.ndim(C) == 2 else mp.diag(C)) if len(C) else mp.zeros(dim)
-        self.friction = whole(np.array((inverse * S * friction * S.T).tolist(), dtype=object))
-        levers = np.array([list(X * mp.matrix(place)) for X in matrices], dtype=object)
-        self.levers, self.force = whole(back @ levers), whole(force)
-        self.hats = whole(np.array([X.tolist() for X in matrices], dtype=object))
-        self.size = n + affine
-        self.place, self.inertia = whole(place), whole(np.array((S * inertia * S.T).tolist(), dtype=object))
+        affine, basis, S = group[1] == "E", exact(algebra(group)), exact(rows)
+        force, place = [*F, *[0] * affine], exact([*point, *[1] * affine])
+        momenta = inertia_operator(basis, exact(tensor)) @ S.T
+        back, hats = inverse_of(S @ momenta), np.tensordot(S, basis, 1)
+        brackets = coordinates(basis, hats[:, None] @ hats - hats @ hats[:, None])
+        self.torques = whole(np.swapaxes(brackets @ momenta, 1, 2) @ back)
+        friction = exact(C if np.ndim(C) == 2 else np.diag(C or np.zeros(len(basis))))
+        self.friction = whole(back @ S @ friction @ S.T)
+        self.levers, self.force, self.hats = whole(back @ (hats @ place)), whole(force), whole(hats)
+        self.size, self.place, self.inertia = len(place), whole(place), whole(S @ momenta)
 
     def expanded(self, w: Any, g: Any, shift: int) -> tuple[list[Any], list[Any]]:
         """Return the terms of a step of 2^-shift."""
@@ -127,7 +105,7 @@ def main() -> None:
             if not C:
                 change = motion.energy(*one) - motion.energy(*found[0])
                 require(mp.ldexp(mpf(abs(change)), -BITS), f"{name}: energy", bound)
-        states = [[decimals((number * mp.ldexp(1, -BITS)).tolist()) for number in state] for state in found]
+        states = [[decimals(number * mp.ldexp(1, -BITS)) for number in state] for state in found]
         written.append(
             {"name": name, "group": group, "mass_tensor": tensor, "constraint_subspace": rows, "friction": C}
             | {"force": F, "point": point, "restricted_velocity": velocity, "times": TIMES}

@@ -77,11 +77,8 @@ ADDED = [Verdict.SETTLED, Verdict.REMARK]
 
 
 def _finding(verdict: Verdict, claim: str = "\u201cclaim\u201d", **changed: object) -> Finding:
-    given = {
-        "corrected": None if verdict is Verdict.AS_PRINTED else "right",
-        "errata": ("S1",) if verdict.is_erratum else (),
-        **changed,
-    }
+    errata, corrected = ("S1",) if verdict.is_erratum else (), None if verdict is Verdict.AS_PRINTED else "right"
+    given = {"errata": errata, "corrected": corrected} | changed
     build = finding("label", "remark", "Section 1", claim, verdict=verdict, tolerance=1e-9, **given)
     return build(lambda: Measured(0.0))
 
@@ -93,18 +90,17 @@ def test_verdicts() -> None:
     assert len({verdict.meaning for verdict in Verdict}) == len(Verdict)
 
 
-@pytest.mark.parametrize(("defect", "holds"), [(0.0, True), (1e-9, True), (2e-9, False), (math.nan, False)])
 @pytest.mark.parametrize("verdict", Verdict)
-def test_right_statement_is_met_to_the_tolerance(verdict: Verdict, defect: float, holds: bool) -> None:
-    """A finding whose right statement is off by more than the tolerance, or by an undefined defect, does not hold."""
-    assert _finding(verdict).holds(Measured(defect, printed=1.0)) is holds
-
-
-@pytest.mark.parametrize(("printed", "holds"), [(1e-8, False), (9e-7, False), (2e-6, True), (math.nan, False)])
-@pytest.mark.parametrize("verdict", Verdict)
-def test_what_is_denied_fails_clearly(verdict: Verdict, printed: float, holds: bool) -> None:
-    """What is denied has to be off by more than a thousand tolerances, whatever the verdict."""
-    assert _finding(verdict).holds(Measured(0.0, printed)) is holds
+@pytest.mark.parametrize(
+    ("defect", "printed", "holds"),
+    [
+        *((defect, 1.0, defect <= 1e-9) for defect in (0.0, 1e-9, 2e-9, math.nan)),
+        *((0.0, printed, printed > 1e-6) for printed in (1e-8, 9e-7, 2e-6, math.nan)),
+    ],
+)
+def test_a_finding_holds(verdict: Verdict, defect: float, printed: float, holds: bool) -> None:
+    """What is right is met to the tolerance, what is denied fails by more than a thousand; NaN is never good."""
+    assert _finding(verdict).holds(Measured(defect, printed)) is holds
 
 
 @pytest.mark.parametrize("verdict", Verdict)
@@ -113,23 +109,18 @@ def test_an_erratum_shows_that_the_printed_statement_fails(verdict: Verdict) -> 
     assert _finding(verdict).holds(Measured(0.0)) is not verdict.is_erratum
 
 
-@pytest.mark.parametrize("verdict", Verdict)
-def test_correction_comes_with_what_is_not_right(verdict: Verdict) -> None:
-    """A correction of what is right, and anything else without one, are refused."""
-    wrong = "right" if verdict is Verdict.AS_PRINTED else None
-    with pytest.raises(ValueError, match=r"'label' must have `corrected` exactly where"):
-        _finding(verdict, corrected=wrong)
+CORRECTED, ROW, QUOTED = "have `corrected` exactly where", "have a row of the errata exactly where", "quote the paper"
 
 
-@pytest.mark.parametrize("verdict", Verdict)
-def test_row_comes_with_what_is_to_be_corrected(verdict: Verdict) -> None:
-    """An erratum without a row, and a row of anything else, are refused."""
-    with pytest.raises(ValueError, match=r"'label' must have a row of the errata exactly where"):
-        _finding(verdict, errata=() if verdict.is_erratum else ("S1",))
-
-
-@pytest.mark.parametrize("verdict", [*ERRATA, *ADDED])
-def test_what_is_not_right_as_printed_is_quoted(verdict: Verdict) -> None:
-    """A claim in other words than the paper's is refused where something is said against it or added."""
-    with pytest.raises(ValueError, match="'label' must quote the paper"):
-        _finding(verdict, claim="claim")
+@pytest.mark.parametrize(
+    ("verdict", "given", "words"),
+    [
+        *((each, {"corrected": "right" if each is Verdict.AS_PRINTED else None}, CORRECTED) for each in Verdict),
+        *((each, {"errata": () if each.is_erratum else ("S1",)}, ROW) for each in Verdict),
+        *((each, {"claim": "claim"}, QUOTED) for each in (*ERRATA, *ADDED)),
+    ],
+)
+def test_what_a_verdict_needs(verdict: Verdict, given: dict[str, object], words: str) -> None:
+    """A correction and a row come exactly with what is to be corrected; what is not right as printed is quoted."""
+    with pytest.raises(ValueError, match=f"'label' must {words}"):
+        _finding(verdict, **given)

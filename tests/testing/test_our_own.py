@@ -39,11 +39,8 @@ COMPILED = {
     "all forbidden": nh.LLSystem(nh.SO(3), np.eye(3), []),
     "turned over": nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.1, axis=(0, 0, -1)),
 }
-OTHERS = {
-    "Heisenberg": nh.LLSystem(HEISENBERG, inertia_operator=INERTIA, annihilator=[[0, 0, 1]]),
-    "SL(2)": ON_SL2,
-    "robot": ROBOT,
-}
+ON_HEISENBERG = nh.LLSystem(HEISENBERG, inertia_operator=INERTIA, annihilator=[[0, 0, 1]])
+OTHERS = {"Heisenberg": ON_HEISENBERG, "SL(2)": ON_SL2, "robot": ROBOT}
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=str)
@@ -79,9 +76,8 @@ def test_compiled_steps(name: str, time_step: float) -> None:
     report = check_discretization(discrete, definition=False, tolerance_factor=0.1, throw=False)
     assert {each.name for each in report.failed} <= {"order of the start"}
     assert report["order of the start"].value is None or report["order of the start"].value < 0.3
-    assert report["energy"].status == (
-        "not checked" if name == "all forbidden" else "ok" if discrete.conserves_energy else "reported"
-    )
+    judged = "ok" if discrete.conserves_energy else "reported"
+    assert report["energy"].status == ("not checked" if name == "all forbidden" else judged)
 
 
 def test_a_compiled_step_against_the_definition() -> None:
@@ -119,18 +115,8 @@ def test_callables_in_place_of_names() -> None:
     assert report["self-adjoint"].value < 1e-12
 
 
-# Each check says what it takes.
-test_other_things_are_refused = refusals(
-    *(
-        (check, thing, rf"`{check.__name__}\(.*must be .*Got .*Pass ")
-        for check, thing in ((check_group, np.eye(3)), (check_system, nh.SE(2)), (check_discretization, ON_SL2))
-    ),
-    ask=lambda check, thing: check(thing),
-)
-
-
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
-START = (1.0, 0.5, 0.0)
+START, HERE = (1.0, 0.5, 0.0), np.eye(3)
 
 
 @pytest.mark.profile("routes", cases=["4"])
@@ -150,14 +136,26 @@ def test_another_order_is_refused() -> None:
     assert abs(check_order(discrete, START, tolerance=1e-6, throw=False).order.momentum - 2) > 1e-6
 
 
-def test_a_system_is_no_discretization() -> None:
-    """What is refused is named with the remedy."""
-    with pytest.raises(ValueError, match=r"check_order\(discrete=...\).*Pass `discretize"):
-        check_order(SLEIGH, START)
+# Each check says what it takes; bodies on a group begin anywhere.
+test_other_things_are_refused = refusals(
+    (lambda: check_group(np.eye(3)), r"check_group\(.*must be .*Got .*Pass "),
+    (lambda: check_system(nh.SE(2)), r"check_system\(.*must be .*Got .*Pass "),
+    (lambda: check_discretization(ON_SL2), r"check_discretization\(.*must be .*Got .*Pass "),
+    (lambda: check_order(SLEIGH, START), r"check_order\(discrete=...\).*Pass `discretize"),
+    (
+        lambda: check_system(SLEIGH, configuration=HERE),
+        r"check_system\(configuration=...\)` must be left out on a group",
+    ),
+    (
+        lambda: check_discretization(nh.discretize(SLEIGH, 0.1), configuration=HERE),
+        r"check_discretization\(configuration=...\)` must be left out",
+    ),
+    begin="`",
+)
 
 
 READY = ["particle", "two_wheeled_robot", "roller_racer", "driven_sleigh", "rolling_disk", "knife_edge_on_incline"]
-HERE = pytest.mark.profile("routes", instead="test_a_spring_passes")
+ROUTES = pytest.mark.profile("routes", instead="test_a_spring_passes")
 STRAIGHT = np.zeros(5)  # a snakeboard whose wheels are not turned
 
 
@@ -173,7 +171,7 @@ def _pushed(time: Any, q: Any, v: Any) -> Any:
     return jnp.stack([jnp.sin(time) - 0.1 * v[0], 0.3 * q[0]])
 
 
-@HERE
+@ROUTES
 @pytest.mark.parametrize("name", [*READY, "snakeboard"])
 def test_ready_systems_pass(name: str) -> None:
     """From a random place, or one that is given; what is driven closes its balance."""
@@ -186,7 +184,7 @@ def test_ready_systems_pass(name: str) -> None:
     assert (report["prescribed"].status == "ok") == bool(system.prescribed)
 
 
-@HERE
+@ROUTES
 def test_torques_friction_and_tables_pass() -> None:
     """A differential drive with motors; with one force for each step the flow is not compared."""
     robot = nh.examples.two_wheeled_robot(torques=lambda t: (jnp.sin(t), 0.3), friction=0.1).system
@@ -206,6 +204,9 @@ def test_a_spring_passes() -> None:
     assert {result.status for result in report.results} == {"ok"}
 
 
+ACTION = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
+
+
 def _turning(g: Any) -> Any:
     return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
 
@@ -218,12 +219,11 @@ def _crooked(g: Any, W: Any, h: Any) -> Any:
     return _turning(g) @ jnp.array([W[1, 0], W[0, 2], W[1, 2]]) / h
 
 
-@HERE
+@ROUTES
 @pytest.mark.parametrize("potential", [None, _hill])
 def test_systems_on_groups_by_functions_pass(potential: Any) -> None:
     """A blade that turns in the body with the place: the equations and the principle in the body, with a potential."""
-    action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
-    sleigh = nh.Forced(nh.GroupLagrangeDAlembert(nh.SE(2), action, _turning), potential)
+    sleigh = nh.Forced(nh.GroupLagrangeDAlembert(nh.SE(2), ACTION, _turning), potential)
     assert check_system(sleigh, rng=2).passed
     report = check_discretization(nh.discretize(sleigh, 0.05))
     assert report.passed
@@ -240,12 +240,11 @@ def _changed_equations(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     forget()
 
 
-@HERE
+@ROUTES
 @pytest.mark.usefixtures("changed_equations")
 def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the term ad* the equations fail; a crooked rule for the constraint is of order one."""
-    action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
-    crooked = nh.GroupLagrangeDAlembert(nh.SE(2), action, _turning, _crooked)
+    crooked = nh.GroupLagrangeDAlembert(nh.SE(2), ACTION, _turning, _crooked)
     report = check_discretization(nh.discretize(crooked, 0.05), throw=False)
     assert {"order of momenta", "order of configurations"} <= {result.name for result in report.failed}
     monkeypatch.setattr(_places.Poses, "force", lambda *given: 0.0 * given[1])
@@ -253,7 +252,7 @@ def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "equations of motion" in {result.name for result in check_system(body, throw=False).failed}
 
 
-@HERE
+@ROUTES
 @pytest.mark.usefixtures("changed_equations")
 @pytest.mark.parametrize(
     ("home", "name", "expected"),
@@ -270,12 +269,3 @@ def test_errors_in_equations(monkeypatch: pytest.MonkeyPatch, home: Any, name: s
     body = nh.Forced(nh.LagrangeDAlembert(_ball, None, dimension=2), force=_pushed)
     report = check_system(body, throw=False)
     assert {result.name for result in report.failed} == expected
-
-
-def test_a_place_is_for_coordinates() -> None:
-    """Bodies on a group begin anywhere, and say so."""
-    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
-    with pytest.raises(ValueError, match=r"check_system\(configuration=...\)` must be left out on a group"):
-        check_system(sleigh, configuration=np.eye(3))
-    with pytest.raises(ValueError, match=r"check_discretization\(configuration=...\)` must be left out"):
-        check_discretization(nh.discretize(sleigh, 0.1), configuration=np.eye(3))
