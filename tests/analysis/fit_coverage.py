@@ -32,12 +32,9 @@ class Body(NamedTuple):
     noise: dict[str, float]
 
 
-def _sleigh(p: dict) -> nh.ChaplyginSleigh:
-    return nh.ChaplyginSleigh(mass=1.0, inertia=p["inertia"], a=p["a"])
-
-
-def _sleigh_of_known_inertia(p: dict) -> nh.ChaplyginSleigh:
-    return nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=p["a"])
+def sleigh(p: dict) -> nh.ChaplyginSleigh:
+    """Return a sleigh whose inertia may be known."""
+    return nh.ChaplyginSleigh(mass=1.0, inertia=p.get("inertia", 0.7), a=p["a"])
 
 
 def _top(p: dict) -> nh.SuslovTop:
@@ -49,14 +46,14 @@ IN_PLANE = {"position": ("x", "y"), "turn": ("theta",), "rate": ("omega",)}
 IN_SPACE = {"turn": ("qw", "qx", "qy", "qz"), "rate": ("omega_x", "omega_y", "omega_z")}
 EVERY = {"position": 3, "turn": 7, "rate": 1}
 SLEIGH = Body(
-    _sleigh,
+    sleigh,
     {"inertia": 0.7, "a": 0.4},
     {"inertia": 0.8, "a": 0.35},
     (1.0, 0.5),
     IN_PLANE,
     {"position": 0.004, "turn": 0.002, "rate": 0.02},
 )
-TURNING = SLEIGH._replace(system_of=_sleigh_of_known_inertia, truth={"a": 0.4}, guess={"a": 0.35})
+TURNING = SLEIGH._replace(truth={"a": 0.4}, guess={"a": 0.35})
 TOP = Body(
     _top,
     {"c1": 0.3, "c2": -0.2, "b": 1.0},
@@ -88,7 +85,7 @@ def record_of(name: str, seed: int) -> dict[str, np.ndarray]:
     record = {"t": orbit.time}
     for kind in kinds:
         if kind == "rate":
-            rows = orbit.body_velocity[:, :1] if body.columns is IN_PLANE else orbit.body_velocity
+            rows = orbit.body_velocity[:, : len(body.columns[kind])]
         elif kind == "turn" and body.columns is IN_SPACE:
             turned = orbit.configuration @ nh.SO(3).exp(body.noise[kind] * rng.normal(size=(STEPS + 1, 3)))
             rows = nh.SO(3).pose_from_matrix(turned)

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from problems import PROBLEMS
 from refusals import refusals
 
 import nonholo as nh
@@ -47,34 +46,19 @@ def test_errors_are_those_of_the_definition(name: str) -> None:
     """Computed state by state: norms of r - r', of g^-1 g' - I, and E - E'; the flow is asked at the orbit's times."""
     orbit = run(name, 0.1)
     other = flow(name, *orbit.time)
-    against = nh.compare(orbit, flow(name))
-    for k in (0, 7, 40):
-        D = np.linalg.inv(orbit.configuration[k]) @ other.configuration[k]
-        assert abs(against.pose[k] - np.linalg.norm(D - np.eye(3))) <= 1e-12
-        assert (
-            abs(against.momentum[k] - np.linalg.norm((orbit.restricted_momentum - other.restricted_momentum)[k]))
-            <= 1e-12
-        )
-        assert abs(against.energy[k] - (orbit.energy - other.energy)[k]) <= 1e-12
+    D = np.linalg.inv(orbit.configuration) @ other.configuration
+    momentum = np.linalg.norm(orbit.restricted_momentum - other.restricted_momentum, axis=1)
+    wanted = momentum, np.linalg.norm(D - np.eye(3), axis=(1, 2)), orbit.energy - other.energy
+    np.testing.assert_allclose(nh.compare(orbit, flow(name)).errors, wanted, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("turn", "move"), [(0.3, 0.0), (np.pi, 0.0), (0.0, 2.5)])
 def test_the_pose_error_of_a_known_displacement(turn: float, move: float) -> None:
     """A turn by alpha counts 2 sqrt 2 |sin(alpha/2)|, a translation its length, wherever the body is."""
     orbit = run("sleigh", 0.1)
-    x, y = move * np.cos(1.1), move * np.sin(1.1)
-    moved = orbit.canonical_pose.copy()
-    angle = orbit.heading + turn
-    moved[:, 0], moved[:, 1] = np.cos(angle), np.sin(angle)
-    moved[:, 2:] += np.array([x, y]) + (rotations(angle) - rotations(orbit.heading)) @ SLEIGH.frame[:2, 2]
-    error = nh.compare(dataclasses.replace(orbit, canonical_pose=moved, turned=None), orbit).pose
+    beside = orbit.beside(np.tile([turn, move * np.cos(1.1), move * np.sin(1.1)], (len(orbit), 1)))
+    error = nh.compare(beside, orbit).pose
     assert np.abs(error - np.hypot(2 * np.sqrt(2) * np.sin(turn / 2), move)).max() <= 1e-13
-
-
-def rotations(angle: np.ndarray) -> np.ndarray:
-    """Return the rotations of the plane by angles."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
 
 
 @pytest.mark.profile("routes", cases=["free", "veselova"])
@@ -124,25 +108,23 @@ def wide(system: nh.LLSystem | nh.SuslovTop) -> nh.Orbit:
     return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=(0.3, 0.5, -0.4), steps=1)
 
 
-REFUSED = {
-    "no orbit": (lambda: nh.compare(5, flow("top")), r"compare\(orbit=...\)` must be an orbit"),
-    "no flow": (lambda: nh.compare(run("top", 0.1), None), r"compare\(flow=...\)` must be an orbit"),
-    "group": (lambda: nh.compare(run("top", 0.1), flow("sleigh")), r"must move in SO\(3\). Got SE\(2\)"),
-    "constraint": (lambda: nh.compare(run("top", 0.1), flow("free")), "the constraint of the orbit"),
-    "rows of an arrowhead": (lambda: nh.compare(wide(ARROWHEAD), wide(TURNED)), "the constraint of the orbit"),
-    "times": (lambda: nh.compare(run("top", 0.1), flow("top", 5.0, 6.0)), "a time in common"),
-    "no states": (lambda: nh.compare(run("top", 0.1)[:0], run("top", 0.1)), "a time in common"),
-    "one": (lambda: nh.compare([run("top", 0.1)], flow("top")), "different time steps"),
-    "equal": (lambda: nh.compare([run("top", 0.1)] * 2, flow("top")), "different time steps"),
-    "flows": (lambda: nh.compare([flow("top")] * 2, flow("top")), "different time steps"),
-    "a number in a list": (lambda: nh.compare([1.0], flow("top")), r"compare\(orbit=...\)\[0\]"),
-    "picture": (lambda: nh.plot.comparison(5), "be a comparison"),
-    "picture of orders": (lambda: nh.plot.convergence(5), "be a convergence"),
-}
-
-
 # Each message names the argument and what it must be.
-test_what_cannot_be_compared_is_refused = refusals(*REFUSED.values())
+test_what_cannot_be_compared_is_refused = refusals(
+    (lambda: nh.compare(5, flow("top")), r"compare\(orbit=...\)` must be an orbit"),
+    (lambda: nh.compare(run("top", 0.1), None), r"compare\(flow=...\)` must be an orbit"),
+    (lambda: nh.compare(run("top", 0.1), flow("sleigh")), r"must move in SO\(3\). Got SE\(2\)"),
+    (lambda: nh.compare(run("top", 0.1), flow("free")), "the constraint of the orbit"),
+    (lambda: nh.compare(wide(ARROWHEAD), wide(TURNED)), "the constraint of the orbit"),
+    (lambda: nh.compare(run("top", 0.1), flow("top", 5.0, 6.0)), "a time in common"),
+    (lambda: nh.compare(run("top", 0.1)[:0], run("top", 0.1)), "a time in common"),
+    (lambda: nh.compare([run("top", 0.1)], flow("top")), "different time steps"),
+    (lambda: nh.compare([run("top", 0.1)] * 2, flow("top")), "different time steps"),
+    (lambda: nh.compare([flow("top")] * 2, flow("top")), "different time steps"),
+    (lambda: nh.compare([1.0], flow("top")), r"compare\(orbit=...\)\[0\]"),
+    (lambda: nh.invariants(run("top", 0.1)[:0]), r"at least one state.*outcome"),
+    (lambda: nh.plot.comparison(5), "be a comparison"),
+    (lambda: nh.plot.convergence(5), "be a convergence"),
+)
 
 
 def test_pictures_draw_the_errors() -> None:
@@ -158,13 +140,6 @@ def test_pictures_draw_the_errors() -> None:
 
 DISCRETE = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 RUN = nh.simulate(DISCRETE, body_velocity=(0.1, 1.0, 0.0), steps=2)
-
-
-def test_no_states() -> None:
-    """An orbit that never started has nothing to measure, and the error says where to look."""
-    empty = nh.simulate(nh.discretize(PROBLEMS[0].system, 1.0), body_velocity=(40.0, 0.0, 0.0), steps=3, throw=False)
-    with pytest.raises(ValueError, match=r"at least one state.*outcome"):
-        nh.invariants(empty)
 
 
 def test_the_help_names_every_field() -> None:
@@ -194,35 +169,30 @@ def test_edges_of_a_right_invariant_run(velocity: tuple[float, float]) -> None:
     discrete = nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1)
     found = nh.invariants(nh.simulate(discrete, restricted_velocity=velocity, steps=3, save_every=4))
     assert (found.states, found.energy_drift) == (1, 0.0)
-    assert found.reversal_defect is not None
-    assert found.reversal_defect < 1e-14
+    assert 0 <= found.reversal_defect < 1e-14
 
 
 @pytest.mark.profile("routes", instead="test_edges_of_a_right_invariant_run")
 def test_undefined_quantities_are_none() -> None:
     """A flow has no displacements, a run without poses no group residual, another difference no reversal defect."""
     flow = nh.invariants(nh.flow(DISCRETE.system, body_velocity=(1, 0, 0), times=[0.0, 1.0]))
-    assert flow.reversal_defect is None
-    assert flow.largest_step_angle is None
+    assert flow.reversal_defect is flow.largest_step_angle is None
     bare = nh.invariants(nh.simulate(DISCRETE, body_velocity=(1, 0, 0), steps=5, reconstruct=False))
     assert bare.group_residual is None
     logarithmic = nh.discretize(DISCRETE.system, 0.1, difference="logarithmic")
     assert nh.invariants(nh.simulate(logarithmic, body_velocity=(1, 0, 0), steps=2)).reversal_defect is None
 
 
-@pytest.mark.parametrize(("field", "measure"), [("cayley", "reversal_defect"), ("reduced_momentum", "energy_drift")])
-def test_a_spoilt_orbit_is_seen(field: str, measure: str) -> None:
+@pytest.mark.parametrize(
+    ("field", "measure"),
+    [("cayley", "reversal_defect"), ("reduced_momentum", "energy_drift"), ("canonical_pose", "group_residual")],
+)
+@pytest.mark.parametrize("name", ["sleigh", "top"])
+def test_a_spoilt_orbit_is_seen(name: str, field: str, measure: str) -> None:
     """A relative change of 1e-9 in one state shows in what belongs to it."""
-    orbit = nh.simulate(DISCRETE, body_velocity=(1, 0, 0), steps=50)
+    orbit = run(name, 0.1)
     rows = getattr(orbit, field).copy()
     rows[20] *= 1 + 1e-9
     spoilt = nh.invariants(dataclasses.replace(orbit, **{field: rows}))
     assert getattr(nh.invariants(orbit), measure) < 1e-14
     assert getattr(spoilt, measure) > 1e-11
-
-
-def test_group_residual_is_seen() -> None:
-    """Poses off the group show."""
-    orbit = nh.simulate(nh.discretize(PROBLEMS[0].system, 0.1), restricted_velocity=(0.9, -0.4), steps=5)
-    stretched = dataclasses.replace(orbit, canonical_pose=np.array(orbit.canonical_pose) * (1 + 1e-9))
-    assert nh.invariants(stretched).group_residual > 1e-10

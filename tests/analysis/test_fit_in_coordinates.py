@@ -13,7 +13,7 @@ import nonholo as nh
 from nonholo.analysis.inverse._measurements import kinds_of
 
 H, STEPS, NOISE = 0.05, 60, 1e-3
-TRUTH = {"inertia": 0.7, "arm": 0.4}
+TRUTH, GUESS = {"inertia": 0.7, "arm": 0.4}, {"inertia": 1.0, "arm": 0.3}
 
 
 def body(q, v, p):  # noqa: ANN001, ANN201
@@ -51,7 +51,7 @@ def recorded(seed: int, *names: str, noise: float = NOISE) -> dict[str, np.ndarr
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_a_clean_record_is_fitted_closely() -> None:
     """With noise of a millionth the numbers of positions alone are those of the truth, and so is the motion."""
-    found = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), {"inertia": 1.0, "arm": 0.3})
+    found = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), GUESS)
     assert {name: pytest.approx(value, abs=1e-4) for name, value in TRUTH.items()} == found.parameters
     assert found.system == robot(found.parameters)
     assert np.abs(found.residuals[0]["position"]).max() <= 5e-6
@@ -59,16 +59,21 @@ def test_a_clean_record_is_fitted_closely() -> None:
     assert found.outcome == "converged"
 
 
-def deviations(seeds: int) -> np.ndarray:
-    """Return the errors of both numbers in units of their standard deviations."""
-    found = [nh.fit(robot, recorded(seed, "x", "y"), {"inertia": 1.0, "arm": 0.3}) for seed in range(seeds)]
-    errors = [[fit.parameters[name] - value for name, value in TRUTH.items()] for fit in found]
-    return np.array(errors) / np.array([np.sqrt(fit.covariance.diagonal()) for fit in found])
+def deviations(found: Any, truth: dict[str, float]) -> np.ndarray:
+    """Return the errors of a fit in units of their standard deviations."""
+    off = [found.parameters[name] - value for name, value in truth.items()]
+    return np.array(off) / np.sqrt(found.covariance.diagonal())
+
+
+def of_robots(seeds: int) -> np.ndarray:
+    """Return those of noisy positions alone."""
+    fits = (nh.fit(robot, recorded(seed, "x", "y"), GUESS) for seed in range(seeds))
+    return np.array([deviations(found, TRUTH) for found in fits])
 
 
 def test_noisy_positions_tell_two_numbers() -> None:
     """In four records no error is beyond three deviations, and they are not all small: 8 normal numbers."""
-    off = deviations(4)
+    off = of_robots(4)
     assert np.abs(off).max() <= 3.0
     assert 0.3 <= np.sqrt(np.mean(off**2)) <= 1.7  # 8 numbers: 1 with a deviation of 0.25
 
@@ -76,7 +81,7 @@ def test_noisy_positions_tell_two_numbers() -> None:
 @pytest.mark.profile("long", instead="test_noisy_positions_tell_two_numbers")
 def test_intervals_hold_in_many_records() -> None:
     """Of 200 records the errors have the deviations that the covariance says: 1 within 0.05."""
-    off = deviations(200)
+    off = of_robots(200)
     assert np.sqrt(np.mean(off**2)) == pytest.approx(1.0, abs=0.15)
     assert np.mean(np.abs(off) <= 3.0) >= 0.98
 
@@ -86,21 +91,19 @@ def test_each_coordinate_has_a_noise_of_its_own() -> None:
     """Positions, headings, beyond half a turn, and a wheel angle are kinds by their names."""
     record = recorded(1, "x", "y", "theta", "wheel")
     record["theta"] = np.angle(np.exp(1j * (record["theta"] + 5 * NOISE * np.sin(7 * np.arange(STEPS + 1)))))
-    found = nh.fit(robot, record, {"inertia": 1.0, "arm": 0.3})
+    found = nh.fit(robot, record, GUESS)
     assert list(found.noise) == ["position", "theta", "wheel"]
     assert 0.5 * NOISE <= found.noise["position"] <= 2 * NOISE
     assert 2 * NOISE <= found.noise["theta"] <= 6 * NOISE
-    again = nh.fit(
-        robot, {("heading" if key == "theta" else key): x for key, x in record.items()}, {"inertia": 1.0, "arm": 0.3}
-    )
-    assert again.parameters == found.parameters
+    record["heading"] = record.pop("theta")
+    assert nh.fit(robot, record, GUESS).parameters == found.parameters
 
 
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_several_trials_have_one_body() -> None:
     """Two records, each with a start of its own, tell more than one."""
     records = [recorded(seed, "x", "y") for seed in (0, 1)]
-    alone, both = (nh.fit(robot, given, {"inertia": 1.0, "arm": 0.3}) for given in (records[0], records))
+    alone, both = (nh.fit(robot, given, GUESS) for given in (records[0], records))
     assert (np.sqrt(both.covariance.diagonal()) < 0.85 * np.sqrt(alone.covariance.diagonal())).all()
     assert len(both.orbit) == 2
 
@@ -117,7 +120,7 @@ test_bad_fits_are_refused = pytest.mark.profile("routes", cases=["must determine
         (robot, (), "columns of a motion in every trial"),
         (robot, ("x",), "columns of a motion in every trial"),
         (robot, ("wheel",), "must determine all parameters"),
-        ask=lambda system_of, columns: nh.fit(system_of, recorded(0, *columns), {"inertia": 1.0, "arm": 0.3}),
+        ask=lambda system_of, columns: nh.fit(system_of, recorded(0, *columns), GUESS),
     )
 )
 
@@ -183,8 +186,7 @@ def misses(seed: int) -> np.ndarray:
     record = {"t": orbit.time} | dict(zip(("x", "y", "theta"), rows.T, strict=True))
     found = nh.fit(twistcar, record, {"inertia": 0.2, "center": 0.2, "handle": 0.25})
     assert found.outcome == "converged"
-    off = [found.parameters[name] - value for name, value in TWISTCAR.items()]
-    return np.array(off) / np.sqrt(found.covariance.diagonal())
+    return deviations(found, TWISTCAR)
 
 
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")

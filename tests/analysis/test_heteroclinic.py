@@ -80,12 +80,6 @@ def test_an_energy_names_the_orbit_through_the_middle(name: str) -> None:
         assert np.all(np.sign(sides) == side)
 
 
-def test_limits_in_space_and_turn() -> None:
-    """The turn of a traced sleigh is the total turn that `asymptotics` finds for it."""
-    found = nh.heteroclinic(nh.discretize(SYSTEMS["sleigh 2"], STEP), energy=0.3)
-    assert found.limits.heading_turn == pytest.approx(np.ptp(found.orbit.heading), rel=1e-12)
-
-
 _TOP, _ENERGY = nh.discretize(TOP, STEP), {"energy": 1.0}
 # Each refusal names what is missing.
 test_what_cannot_be_traced_is_refused = refusals(
@@ -199,16 +193,12 @@ def test_all_branches_stay_on_the_curve() -> None:
     """The rational body with four real branches: the points over all of them have one energy and are on one level."""
     top = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
     charts = np.array([[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]])
-    energies = top.system.constrained_energy(top.system.restrict(_momentum(top, charts)))
+    energies = top.system.constrained_energy(top.system.restrict(nh.discrete_legendre(top, top.displaced(charts))))
     assert np.allclose(energies, energies[0], rtol=1e-8)  # the digits of the charts
     curve = nh.invariant_curve(top, energies[0])
     for y in charts:
         z = np.array([1.0, *y]) / np.sqrt(1 + y @ y)
         assert np.abs(curve.over(np.arctan2(y[1], y[0])) - z).max(axis=1).min() < 1e-7
-
-
-def _momentum(discrete: nh.Discretization, charts: np.ndarray) -> np.ndarray:
-    return nh.discrete_legendre(discrete, discrete.displaced(charts))
 
 
 def test_refuses_an_energy_that_is_not_positive() -> None:

@@ -113,9 +113,7 @@ def test_few_numbers_of_a_kind_have_few_degrees() -> None:
     held = []
     for _ in range(2000):
         noise = np.where(np.arange(25) < 5, 0.05, 0.3) * rng.normal(size=25)
-        search, columns = _search(np.zeros(25), 5, (np.nan, np.nan))
-        search.problem.kinds["turn"][0, :5, 0] = (columns @ truth + noise)[:5]
-        search.problem.kinds["rate"][0, 5:, 0] = (columns @ truth + noise)[5:]
+        search, _ = _search(1.0 + 0.5 * np.linspace(0.0, 1.0, 25) + noise, 5, (np.nan, np.nan))
         found = search.run(truth)
         covariance, _, degrees = found.estimate.covariance(np.array([True, True]))
         off = np.abs(found.point - truth) / np.sqrt(covariance.diagonal())

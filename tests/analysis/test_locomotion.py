@@ -1,17 +1,20 @@
 """Local connections, gaits and brackets against closed forms, the flow and exact algebra.
 
 Closed forms are derived in docs/how-to/gaits.md: of the car omega = (rho / l) tan(phi) psi', v1 = rho psi'; of the
-snakeboard v1 = (p - (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = v1 tan(phi) / r.
+snakeboard v1 = (p - (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = v1 tan(phi) / r. The connection of a body with
+rotors is the inertia of the rotor over the locked one, A = (I + j)^-1 j.
 """
 
 import dataclasses
 import functools
+import itertools
 from typing import Any, cast
 
 import jax.numpy as jnp
 import mpmath
 import numpy as np
 import pytest
+import scipy
 from refusals import refusals
 
 import nonholo as nh
@@ -20,8 +23,11 @@ from nonholo.analysis.locomotion import _equations
 from nonholo.base.types import Array
 
 LONG = pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
+IN_SPACE = pytest.mark.profile("routes", instead="test_a_circle_of_the_shape_is_a_closed_form")
 RADIUS, BASE = 0.3, 1.7
 MASS, HALF, ROTOR = 1.3, 0.8, 0.6
+MOMENTS, SPINNING, REACH = np.array([1.0, 1.5, 2.0]), 0.5, 0.3
+A1, A2 = np.random.default_rng(5).normal(size=(2, 6, 3)) / 4  # powers of the other shape variable, by columns
 FREE = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + 0 * q[0], None, dimension=4, coordinates=("x", "y", "theta", "s"))
 
 
@@ -43,6 +49,17 @@ def rolling(phi: Any) -> np.ndarray:
     return np.array([v1 * np.tan(phi) / HALF, v1, 0 * v1])
 
 
+def board_laws(phi: np.ndarray, rates: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the curvature of a snakeboard, F_12, and the rate of its momentum."""
+    F = -ROTOR / (MASS * HALF) * np.stack([np.sin(2 * phi) / HALF, np.cos(2 * phi), 0 * phi], -1)
+    return F, np.tan(phi) * rates[:, 1] * p[:, 0] + ROTOR / HALF * rates[:, 0] * rates[:, 1]
+
+
+def both_signs(F: np.ndarray) -> np.ndarray:
+    """Return a curvature from F_12."""
+    return np.stack([np.stack([0 * F, F], -1), np.stack([-F, 0 * F], -1)], -2)
+
+
 def around(corners: list) -> tuple:
     """Return a gait along straight sides at unit intervals, its period and the times of its corners."""
     points = np.array([*corners, corners[0]], dtype=float)
@@ -59,15 +76,41 @@ def placed(x: float, y: float, theta: float) -> np.ndarray:
     return np.array([[np.cos(theta), -np.sin(theta), x], [np.sin(theta), np.cos(theta), y], [0.0, 0.0, 1.0]])
 
 
+def satellite(_s: Array, xi: Array, ds: Array) -> Array:
+    """Return the Lagrangian of a body with two rotors."""
+    return (MOMENTS @ xi**2 + SPINNING * ((xi[:2] + ds) ** 2).sum()) / 2
+
+
+def turner(s: Array) -> Array:
+    """Return rows of a body on SO(3) that turns about its first two axes in proportion to the shape."""
+    return jnp.concatenate([jnp.eye(3), REACH * jnp.eye(3)[:, :2]], 1) + 0 * s[0]
+
+
+def columns(s: Any, stack: Any = np.stack) -> Any:
+    """Return A_1(s_2) and A_2(s_1) on SE(3)."""
+    return A1 @ stack([s[1] ** 0, s[1], s[1] ** 2]), A2 @ stack([s[0] ** 0, s[0], s[0] ** 2])
+
+
+def swimmer(s: Array) -> Array:
+    """Return rows of a body on SE(3) with such a connection, mixed among each other."""
+    mixed = jnp.eye(6) + 0.2 * jnp.sin(s[0]) * jnp.eye(6, k=2)
+    return mixed @ jnp.concatenate([jnp.eye(6), jnp.stack(columns(s, jnp.stack), 1)], 1)
+
+
+@functools.cache
+def swimming() -> LocalConnection:
+    """Return its connection."""
+    return nh.local_connection(nh.ShapedBody(nh.SE(3), ("a", "b"), constraint_forms=swimmer, name="Swimmer"))
+
+
 def test_the_car_has_the_connection_of_the_closed_form() -> None:
     """A and F at random shapes, to rounding; NaN where the front wheels are across."""
     shapes = np.random.default_rng(1).uniform(-1.4, 1.4, (3, 4, 2))
     tan, wanted = np.tan(shapes[..., 1]), np.zeros((3, 4, 3, 2))
     wanted[..., 0, 0], wanted[..., 1, 0] = -RADIUS / BASE * tan, -RADIUS
     np.testing.assert_allclose(car().matrix(shapes), wanted, rtol=0, atol=1e-13)
-    F = np.zeros((3, 4, 3, 2, 2))
-    F[..., 0, 0, 1] = RADIUS / BASE * (1 + tan**2)
-    np.testing.assert_allclose(car().curvature(shapes), F - np.swapaxes(F, -1, -2), rtol=0, atol=1e-11)
+    F = np.stack([RADIUS / BASE * (1 + tan**2), 0 * tan, 0 * tan], -1)
+    np.testing.assert_allclose(car().curvature(shapes), both_signs(F), rtol=0, atol=1e-11)
     assert np.isnan(car().matrix((0.3, np.pi / 2))).all()
     assert car().momentum_components == ()
 
@@ -80,11 +123,8 @@ def test_the_snakeboard_has_the_connection_of_the_closed_form() -> None:
     phi, A = shapes[:, 1], np.zeros((20, 3, 2))
     A[:, :, 0] = -rolling(phi).T
     np.testing.assert_allclose(board().matrix(shapes), A, rtol=0, atol=1e-13)
-    F = np.zeros((20, 3, 2, 2))
-    F[:, 0, 0, 1] = -ROTOR / (MASS * HALF**2) * np.sin(2 * phi)
-    F[:, 1, 0, 1] = -ROTOR / (MASS * HALF) * np.cos(2 * phi)
-    np.testing.assert_allclose(board().curvature(shapes), F - np.swapaxes(F, -1, -2), rtol=0, atol=1e-12)
-    rate = np.tan(phi) * rates[:, 1] * p[:, 0] + ROTOR / HALF * rates[:, 0] * rates[:, 1]
+    F, rate = board_laws(phi, rates, p)
+    np.testing.assert_allclose(board().curvature(shapes), both_signs(F), rtol=0, atol=1e-12)
     np.testing.assert_allclose(board().momentum_rate(shapes, rates, p)[:, 0], rate, rtol=0, atol=1e-12)
     speed = p[:, 0] * np.cos(phi) ** 2 / MASS
     wanted = np.stack([speed * np.tan(phi) / HALF, speed, 0 * speed], -1) - np.einsum("tai,ti->ta", A, rates)
@@ -150,7 +190,7 @@ def test_the_phase_is_the_flow_with_a_prescribed_shape(name: str) -> None:
 
 
 @LONG
-@pytest.mark.parametrize("connection", [car, board])
+@pytest.mark.parametrize("connection", [car, board, swimming])
 def test_the_area_rule_errs_by_the_third_power_of_the_size(connection: functools.partial) -> None:
     """Halving a gait divides the error by eight, and the displacement by four."""
     errors, moved = [], []
@@ -161,7 +201,7 @@ def test_the_area_rule_errs_by_the_third_power_of_the_size(connection: functools
 
         phase = nh.geometric_phase(connection(), gait)
         errors.append(np.abs(phase.holonomy - phase.area_rule).max())
-        moved.append(np.abs(phase.holonomy - np.eye(3)).max())
+        moved.append(np.abs(phase.holonomy - connection().group.identity).max())
     slope = -np.diff(np.log2(errors))
     assert abs(slope[-1] - 3) < 0.1
     assert abs(-np.diff(np.log2(moved))[-1] - 2) < 0.1
@@ -237,6 +277,11 @@ def with_forms(forms: object, **others: object) -> nh.LagrangeDAlembert:
     return dataclasses.replace(FREE, constraint_forms=forms, **others)
 
 
+def with_two_forms() -> nh.ShapedBody:
+    """Return a body with a free component and no Lagrangian."""
+    return nh.ShapedBody(nh.SO(3), ("a", "b"), constraint_forms=lambda s: turner(s)[:2])
+
+
 # Errors say what is required.
 test_others_are_refused = refusals(
     (lambda: nh.local_connection(nh.examples.kinematic_car()), "be a system in coordinates"),
@@ -255,6 +300,7 @@ test_others_are_refused = refusals(
     (lambda: nh.geometric_phase(car(), lambda t: jnp.array([jnp.sin(t), 2 * jnp.sin(t)])), "singular shapes"),
     (lambda: nh.accessibility(FREE, np.zeros(4), depth=9), "be at most 8"),
     (lambda: nh.accessibility(with_forms(lambda q: jnp.zeros((1, 4)) * q), np.zeros(4)), "independent constraints"),
+    (lambda: nh.local_connection(with_two_forms()), "determine 3 components of the body velocity"),
 )
 
 
@@ -280,10 +326,8 @@ def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> N
     M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
     M[0, 3] = M[3, 0] = ROTOR
     at = _equations.terms((1,), np.ones(3), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
-    F = _equations.curvature(nh.SE(2), at)[:, :, 0, 1]
-    wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, -np.cos(2 * phi), 0 * phi], -1)
-    np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
-    rate = np.tan(phi) * ds[:, 1] * p[:, 0] + ROTOR / HALF * ds[:, 0] * ds[:, 1]
+    F, rate = board_laws(phi, ds, p)
+    np.testing.assert_allclose(_equations.curvature(nh.SE(2), at)[:, :, 0, 1], F, rtol=0, atol=1e-12)
     np.testing.assert_allclose(_equations.motion(nh.SE(2), at, ds, p)[1][:, 0], rate, rtol=0, atol=1e-12)
 
 
@@ -296,7 +340,7 @@ def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
 
 
-@pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
+@LONG
 def test_forces_leave_the_connection_as_it_is() -> None:
     """Under friction and a push a car whose shape is driven has the body velocity that the connection says."""
     ready = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE)
@@ -311,7 +355,7 @@ def test_forces_leave_the_connection_as_it_is() -> None:
     np.testing.assert_allclose(connection.body_velocity(orbit.configuration[:, 3:], v[:, 3:]), xi, 0, 1e-12)
 
 
-@pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
+@LONG
 def test_gradients_of_holonomic_constraints_are_rows() -> None:
     """A blade whose heading is geared to its shape: connection, curvature and brackets are those of the rows."""
     blade = lambda q: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0], [jnp.cos(q[2]), jnp.sin(q[2]), 0.0, -0.5]])  # noqa: E731
@@ -328,3 +372,143 @@ def test_gradients_of_holonomic_constraints_are_rows() -> None:
     as_form = with_forms(lambda q: jnp.concatenate([blade(q)[:1], jnp.array([[0.0, 0.0, 1.0, -jnp.cos(q[3])]])]))
     assert nh.accessibility(as_form, np.zeros(4)).growth[:2] == (2, 3)
     assert not nh.accessibility(as_form, np.zeros(4)).is_accessible
+
+
+def test_a_circle_of_the_shape_is_a_closed_form() -> None:
+    """In axes that go around with the shape the equation has constant coefficients: g = exp 2 pi (e3 - r A e2)."""
+    body = nh.ShapedBody(nh.SO(3), ("a", "b"), constraint_forms=turner)
+    connection = nh.local_connection(body)
+    assert connection.components == ("omega1", "omega2", "omega3")
+    np.testing.assert_allclose(connection.curvature((0.1, 0.2))[:, 0, 1], [0, 0, -(REACH**2)], rtol=0, atol=1e-15)
+    phase = nh.geometric_phase(connection, lambda t: 0.7 * jnp.stack([jnp.cos(t), jnp.sin(t)]))
+    exact = nh.SO(3).exp(2 * np.pi * np.array([0.0, -0.7 * REACH, 1.0]))
+    np.testing.assert_allclose(phase.holonomy, exact, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(nh.SO(3).log(phase.area_rule), [0, 0, 0.49 * np.pi * REACH**2], rtol=0, atol=1e-13)
+    assert phase.heading is None
+
+
+@IN_SPACE
+def test_rotors_have_the_mechanical_connection() -> None:
+    """A and F of a satellite to rounding, three momenta; with momentum its spatial angular momentum is kept."""
+    connection = nh.local_connection(nh.ShapedBody(nh.SO(3), ("a", "b"), satellite))
+    ratio = SPINNING / (MOMENTS[:2] + SPINNING)
+    np.testing.assert_allclose(connection.matrix((0.3, 0.1)), np.diag([*ratio, 0.0])[:, :2], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(connection.curvature((0.0, 0.0))[:, 0, 1], [0, 0, -ratio.prod()], rtol=0, atol=1e-15)
+    assert connection.momentum_components == connection.components
+    assert_keeps_momentum(connection, [0.3, -0.2, 0.5])
+
+
+@IN_SPACE
+def test_masses_that_slide_in_space_keep_the_spatial_momentum() -> None:
+    """A body on SE(3) with masses sliding along two axes, whose inertia depends on the shape."""
+
+    def sliding(s: Array, xi: Array, ds: Array) -> Array:
+        turn, shift = xi[:3], xi[3:]
+        energy = (MOMENTS @ turn**2 + 2.0 * shift @ shift) / 2
+        for i, mass in enumerate((0.4, 0.7)):
+            place = s[i] * jnp.eye(3)[i] + 0.2
+            velocity = shift + jnp.cross(turn, place) + ds[i] * jnp.eye(3)[i]
+            energy += mass * velocity @ velocity / 2
+        return energy
+
+    connection = nh.local_connection(nh.ShapedBody(nh.SE(3), ("a", "b"), sliding))
+    assert connection.momentum_components == ("omega1", "omega2", "omega3", "v1", "v2", "v3")
+    assert_keeps_momentum(connection, [0.3, -0.2, 0.5, 0.1, 0.4, -0.3])
+
+
+def assert_keeps_momentum(connection: Any, start: list[float]) -> None:
+    """Check that the momentum of a free body is constant in space along a gait, though not in the body."""
+    gait = lambda t: jnp.stack([0.5 * jnp.cos(t), 0.4 * jnp.sin(t + 0.3)])  # noqa: E731
+    phase, group = nh.geometric_phase(connection, gait, momentum=start), connection.group
+    spatial = [group.coadjoint(group.inverse(g), p) for g, p in zip(phase.configuration, phase.momentum, strict=True)]
+    np.testing.assert_allclose(spatial, np.broadcast_to(start, np.shape(spatial)), rtol=0, atol=1e-12)
+    assert np.ptp(phase.momentum, axis=0).max() > 0.05
+    assert float(group.residual(phase.configuration[-1])) < 1e-13
+
+
+@IN_SPACE
+def test_the_curvature_in_space_is_that_of_the_formula() -> None:
+    """F = d_1 A_2 - d_2 A_1 - [A_1, A_2] of polynomials, to rounding; mixing the rows does not count."""
+    connection = swimming()
+    for s in np.random.default_rng(6).uniform(-1, 1, (5, 2)):
+        a1, a2 = columns(s)
+        slopes = A2 @ [0.0, 1.0, 2 * s[0]] - A1 @ [0.0, 1.0, 2 * s[1]]
+        np.testing.assert_allclose(connection.matrix(s), np.stack([a1, a2], 1), rtol=0, atol=1e-13)
+        exact = slopes - nh.SE(3).bracket(a1, a2)
+        np.testing.assert_allclose(connection.curvature(s)[:, 0, 1], exact, rtol=0, atol=1e-13)
+
+
+@IN_SPACE
+def test_gaits_along_sides_in_space_are_products_of_exponentials() -> None:
+    """Along each side the body velocity is constant: the phase is a product of exponentials."""
+    places = [(-0.3, 0.2), (0.6, 0.2), (0.6, 0.9), (-0.3, 0.9)]
+    gait, period, corners = around(places)
+    phase = nh.geometric_phase(swimming(), gait, period=period, corners=corners)
+    exact = np.eye(4)
+    for a, b in itertools.pairwise([*places, places[0]]):
+        exact = exact @ scipy.linalg.expm(nh.SE(3).hat(-np.subtract(b, a) @ columns(a)))
+    np.testing.assert_allclose(phase.holonomy, exact, rtol=0, atol=1e-13)
+
+
+@IN_SPACE
+def test_a_car_in_its_own_frame_is_the_car_in_coordinates() -> None:
+    """On SE(2) a `ShapedBody` has the connection, the curvature and the phase of the system in coordinates."""
+
+    def rows(s: Array) -> Array:
+        rates = jnp.array([RADIUS / BASE * jnp.tan(s[1]), RADIUS, 0.0])
+        return jnp.concatenate([jnp.eye(3), -jnp.stack([rates, jnp.zeros(3)], 1)], 1)
+
+    own = nh.local_connection(nh.ShapedBody(nh.SE(2), ("psi", "phi"), constraint_forms=rows))
+    shapes = np.random.default_rng(7).uniform(-1, 1, (6, 2))
+    np.testing.assert_allclose(own.matrix(shapes), car().matrix(shapes), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(own.curvature(shapes), car().curvature(shapes), rtol=0, atol=1e-13)
+    gait = lambda t: jnp.stack([2 * jnp.sin(t), 0.5 * jnp.cos(t)])  # noqa: E731
+    one, other = (nh.geometric_phase(each, gait) for each in (own, car()))
+    np.testing.assert_allclose(one.holonomy, other.holonomy, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(one.heading, other.heading, rtol=0, atol=1e-13)
+    assert nh.accessibility(own.system, (0.2, 0.3)).growth == (2, 3, 4, 5)
+
+
+@IN_SPACE
+def test_brackets_on_groups_are_those_of_the_algebra() -> None:
+    """With a constant connection the brackets are those of the vectors (-A_i, e_i) of the algebra."""
+    A = np.random.default_rng(8).normal(size=(6, 2))
+    body = nh.ShapedBody(nh.SE(3), ("a", "b"), constraint_forms=lambda s: jnp.hstack([jnp.eye(6), A]) + 0 * s[0])
+    found = nh.accessibility(body, (0.3, -0.2), depth=5)
+    fields = layer = [(-a, e) for a, e in zip(A.T, np.eye(2), strict=True)]
+    ranks = []
+    while len(ranks) < len(found.growth):
+        ranks.append(int(np.linalg.matrix_rank(np.array([np.append(*field) for field in fields]), rtol=1e-9)))
+        layer = [(nh.SE(3).bracket(-a, x), np.zeros(2)) for a in A.T for x, _ in layer]
+        fields = fields + layer
+    assert found.growth == tuple(ranks)
+    assert found.is_accessible
+
+
+@IN_SPACE
+def test_a_pose_that_is_a_function_of_the_shape_stays_one() -> None:
+    r"""With $g = e^{s_1e_1}e^{s_2e_2}$ motions fill a surface: brackets add nothing, the curvature is zero."""
+
+    def rows(s: Array) -> Array:
+        first = jnp.stack([jnp.cos(s[1]), 0.0, jnp.sin(s[1])])  # of g^-1 dg
+        return jnp.concatenate([jnp.eye(3), -jnp.stack([first, jnp.eye(3)[1]], 1)], 1)
+
+    body, s = nh.ShapedBody(nh.SO(3), ("a", "b"), constraint_forms=rows), (0.3, -0.7)
+    np.testing.assert_allclose(nh.local_connection(body).curvature(s), 0.0, rtol=0, atol=1e-15)
+    assert set(nh.accessibility(body, s).growth) == {2}
+
+
+# The message names the argument.
+test_no_shaped_bodies_are_refused = refusals(
+    ({"group": "SO(3)"}, "be a matrix group"),
+    ({"shape_coordinates": ["a", "b"]}, "Pass a tuple of strings"),
+    ({"shape_coordinates": ("a", "a")}, "be different names"),
+    ({"shape_coordinates": ()}, "be different names"),
+    ({"constraint_forms": None}, "have a Lagrangian or constraints"),
+    ({"constraint_forms": lambda s: jnp.ones((3, 3)) + s[0]}, r"shape \(s, 5\)"),
+    ({"lagrangian": lambda s, xi, ds: xi * ds[0] + s[0]}, "a scalar"),
+    ask=lambda given: nh.ShapedBody(
+        **{"group": nh.SO(3), "shape_coordinates": ("a", "b"), "constraint_forms": turner} | given
+    ),
+    kind=(TypeError, ValueError),
+)

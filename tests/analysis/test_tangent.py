@@ -1,5 +1,7 @@
 """The tangent map along orbits against differences of orbits, exponents, and the Lyapunov function on SO(n), SE(n)."""
 
+import functools
+from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -22,30 +24,48 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("system", BODIES.values(), ids=BODIES)
-def test_tangent_map_is_the_difference_of_orbits(system: AbstractSystem) -> None:
-    """The product of the steps is what central differences of the last momentum say."""
-    discrete, start = nh.discretize(system, 0.1), np.linspace(0.3, 0.5, system.rank)
-    steps = nh.simulate(discrete, momentum=start, steps=5).tangent
-    product = np.linalg.multi_dot(steps[::-1])
+TOP = nh.SuslovTop(np.diag([1.0, 2.0, 1.5]) + 0.1)
+POSED = {
+    "under gravity": nh.Forced(TOP, nh.Gravity([0.0, 0.3, -1.0], [0.1, 0.2, 0.5])),
+    "fixed in space": nh.VeselovaTop(np.diag([1.0, 2.0, 1.5])),
+}
+MAPS = {name: nh.discretize(system, 0.1) for name, system in (BODIES | POSED).items()} | {
+    "composition": nh.discretize(BODIES["offset sleigh"], 0.1, order=4),
+    "logarithmic": nh.discretize(TOP, 0.1, difference="logarithmic"),
+}
+FLOWS = BODIES | POSED | {"under a function": nh.Forced(TOP, lambda g: float(g[2, 0] ** 2 + 0.3 * g[2, 2]))}
 
-    def last(momentum: np.ndarray) -> np.ndarray:
-        return nh.simulate(discrete, momentum=momentum, steps=5).restricted_momentum[-1]
 
-    np.testing.assert_allclose(product, derivatives(last, start), rtol=0, atol=1e-10)
+def _assert_carries(run: Callable[..., nh.Orbit], system: AbstractSystem, error: float) -> None:
+    """Compare the product of tangent maps with differences of the last state, with poses where they count."""
+    group, k = system.group, system.rank
+    start, g = np.linspace(0.3, 0.5, k), group.exp(np.linspace(0.1, 0.3, group.dim))
+    orbit = run(momentum=start, configuration=g)
+    product = np.linalg.multi_dot(orbit.tangent[::-1])
+    posed = group.dim if system.is_spatial or system.is_forced else 0
+
+    def last(z: np.ndarray) -> np.ndarray:
+        end = run(momentum=start + z[posed:], configuration=g @ group.exp(z[:posed]) if posed else g)
+        away = group.log(group.inverse(orbit.configuration[-1]) @ end.configuration[-1])
+        return np.append(away[:posed], end.restricted_momentum[-1])
+
+    np.testing.assert_allclose(product, derivatives(last, np.zeros(posed + k)), rtol=0, atol=error)
 
 
-@pytest.mark.parametrize("system", BODIES.values(), ids=BODIES)
+@pytest.mark.profile("routes", cases=["logarithmic", *POSED])
+@pytest.mark.parametrize("discrete", MAPS.values(), ids=MAPS)
+def test_tangent_maps_are_differences_of_orbits(discrete: nh.Discretization) -> None:
+    """The product of the steps is what differences of the last state say, of closed derivatives and of JAX's."""
+    _assert_carries(functools.partial(nh.simulate, discrete, steps=5), discrete.system, 1e-10)
+
+
+@pytest.mark.profile("routes", cases=[f"*-{name}" for name in FLOWS if name not in BODIES])
+@pytest.mark.parametrize("name", FLOWS)
 @pytest.mark.parametrize("end", [1.5, -1.5])
-def test_tangent_map_of_flows(system: AbstractSystem, end: float) -> None:
-    """The product of the tangent maps of a flow is what differences of flows say, forwards and backwards."""
-    times, start = end * np.array([0.0, 0.2, 0.7, 1.0]), np.linspace(0.3, 0.5, system.rank)
-    product = np.linalg.multi_dot(nh.flow(system, momentum=start, times=times).tangent[::-1])
-
-    def last(momentum: np.ndarray) -> np.ndarray:
-        return nh.flow(system, momentum=momentum, times=times).restricted_momentum[-1]
-
-    np.testing.assert_allclose(product, derivatives(last, start), rtol=0, atol=1e-10)
+def test_tangent_maps_are_differences_of_flows(name: str, end: float) -> None:
+    """The same of flows, forwards and backwards."""
+    run = functools.partial(nh.flow, FLOWS[name], times=end * np.array([0.0, 0.2, 0.7, 1.0]))
+    _assert_carries(run, FLOWS[name], 1e-10 if name in BODIES else 1e-8)
 
 
 def test_tangent_map_of_a_sleigh_in_closed_form() -> None:
@@ -82,35 +102,6 @@ def test_exponents_of_a_straight_motion() -> None:
     np.testing.assert_allclose(nh.lyapunov_exponents(orbit), [0.0, np.log(factor) / h], rtol=1e-12, atol=1e-14)
 
 
-TOP = nh.SuslovTop(np.diag([1.0, 2.0, 1.5]) + 0.1)
-MAPS = {
-    "composition": nh.discretize(BODIES["offset sleigh"], 0.1, order=4),
-    "logarithmic": nh.discretize(TOP, 0.1, difference="logarithmic"),
-    "under gravity": nh.discretize(nh.Forced(TOP, nh.Gravity([0.0, 0.3, -1.0], [0.1, 0.2, 0.5])), 0.1),
-    "fixed in space": nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 1.5])), 0.1),
-}
-
-
-@pytest.mark.profile("routes", keep=["composition"])
-@pytest.mark.parametrize("discrete", MAPS.values(), ids=MAPS)
-def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
-    """Maps without closed derivatives, with poses where they count: the product is that of differences of orbits."""
-    group, k = discrete.system.group, discrete.system.rank
-    start, g = np.linspace(0.3, 0.5, k), discrete.system.group.exp(np.linspace(0.1, 0.3, group.dim))
-    orbit = nh.simulate(discrete, momentum=start, configuration=g, steps=4)
-    product = np.linalg.multi_dot(orbit.tangent[::-1])
-    posed = len(product) - k
-    assert posed == (group.dim if discrete.system.is_spatial or discrete.forces else 0)
-
-    def last(z: np.ndarray) -> np.ndarray:
-        there = g @ group.exp(z[:posed]) if posed else g
-        end = nh.simulate(discrete, momentum=start + z[posed:], configuration=there, steps=4)
-        away = group.log(group.inverse(orbit.configuration[-1]) @ end.configuration[-1])
-        return np.append(away[:posed], end.restricted_momentum[-1])
-
-    np.testing.assert_allclose(product, derivatives(last, np.zeros(posed + k)), rtol=0, atol=1e-10)
-
-
 def test_orbits_of_any_length_share_a_program(caplog: pytest.LogCaptureFixture) -> None:
     """Nothing is compiled again for the tangent maps of a longer orbit."""
     orbits = [nh.simulate(MAPS["composition"], momentum=(0.3, 0.4), steps=steps) for steps in (4, 70)]
@@ -121,31 +112,6 @@ def test_orbits_of_any_length_share_a_program(caplog: pytest.LogCaptureFixture) 
         assert compiled not in caplog.text
         jax.jit(lambda x: x + len(few))(1.0)
         assert compiled in caplog.text
-
-
-FLOWS = {
-    "under gravity": MAPS["under gravity"].system,
-    "fixed in space": MAPS["fixed in space"].system,
-    "under a function": nh.Forced(TOP, lambda g: float(g[2, 0] ** 2 + 0.3 * g[2, 2])),
-}
-
-
-@pytest.mark.profile("routes", instead="test_tangent_map_of_flows")
-@pytest.mark.parametrize("system", FLOWS.values(), ids=FLOWS)
-def test_tangent_maps_of_flows_with_poses(system: AbstractSystem) -> None:
-    """Under forces and under constraints fixed in space the product is that of differences of flows."""
-    group, k, start = system.group, system.rank, np.linspace(0.3, 0.5, system.rank)
-    g = group.exp(np.linspace(0.1, 0.3, group.dim))
-    flow = nh.flow(system, momentum=start, configuration=g, times=[0.0, 0.1, 0.3])
-    product = np.linalg.multi_dot(flow.tangent[::-1])
-
-    def last(z: np.ndarray) -> np.ndarray:
-        there = {"momentum": start + z[group.dim :], "configuration": g @ group.exp(z[: group.dim])}
-        end = nh.flow(system, times=flow.time, **there)
-        away = group.log(group.inverse(flow.configuration[-1]) @ end.configuration[-1])
-        return np.append(away, end.restricted_momentum[-1])
-
-    np.testing.assert_allclose(product, derivatives(last, np.zeros(group.dim + k)), rtol=0, atol=1e-8)
 
 
 @pytest.mark.profile("routes", keep=["True"])
@@ -228,6 +194,8 @@ def test_other_orbits_are_refused() -> None:
 
 def _body(name: str, rng: np.random.Generator) -> AbstractLLSystem:
     kind, n = name.split()
+    if kind == "tilted":
+        return nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
     if kind == "top":
         return nh.SuslovTop(mass_tensor(nh.SO(int(n)), rng))
     if int(n) == 2:
@@ -260,22 +228,15 @@ def test_falls_by_the_claimed_amount(name: str) -> None:
     assert np.abs(change - expected).max() <= 1e-13 * max(1.0, np.abs(orbit.momentum).max())
 
 
-@pytest.mark.profile("routes", keep=["top 4", "sleigh 3"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.profile("routes", keep=["top 4", "sleigh 3", "tilted 3"])
+@pytest.mark.parametrize("name", [*NAMES, "tilted 3"])
 def test_falls_along_the_flow(name: str) -> None:
-    """L falls between all saved states of a flow."""
+    """L falls between all saved states of a flow; it takes momenta in the user's frame."""
     rng = np.random.default_rng(5)
     system = _body(name, rng)
     start = rng.normal(size=len(system.constraint_subspace))
     orbit = nh.flow(system, restricted_velocity=start, times=np.linspace(0.0, 1.0, 6))
     assert np.all(np.diff(nh.lyapunov_function(system)(orbit.momentum)) < 0)
-
-
-def test_tilted_axis() -> None:
-    """The function of a tilted top takes momenta in the user's body frame."""
-    top = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
-    orbit = nh.simulate(nh.discretize(top, 0.1), restricted_velocity=(0.5, 0.6), steps=50)
-    assert np.all(np.diff(nh.lyapunov_function(top)(orbit.momentum)) < 0)
 
 
 def test_balanced_and_refused() -> None:

@@ -50,12 +50,15 @@ def test_closed_form(case: dict) -> None:
 
 @pytest.mark.parametrize("case", CASES, ids=_name)
 def test_numerical_flow(case: dict) -> None:
-    """Right to 1e-11 after some 100 steps of 1e-13 each, full turns counted; with the default 1e-10 to 1e-8."""
+    """Right to 1e-11 after some 100 steps of 1e-13 each, full turns counted; by default to 1e-14 early on."""
     orbit = _flow(case, **SHARP)
     assert _miss(orbit.configuration, case["configurations"]) <= 1e-11
     assert _miss(orbit.body_velocity, case["body_velocities"]) <= 1e-11
     assert _miss(orbit.multipliers, case["multipliers"]) <= 1e-11
-    assert _miss(_flow(case).configuration, case["configurations"]) <= 1e-8
+    usual = _flow(case)
+    assert _miss(usual.configuration, case["configurations"]) <= 1e-8
+    assert _miss(usual.configuration[:3], case["configurations"][:3]) <= 1e-14
+    assert _miss(usual.body_velocity[:3], case["body_velocities"][:3]) <= 1e-14
     if case in SLEIGHS:
         assert _miss(orbit.heading, case["heading"]) <= 1e-11
         assert np.abs(np.cos(orbit.heading) - orbit.configuration[:, 0, 0]).max() <= 1e-14
@@ -118,30 +121,21 @@ def test_backward_in_time(system: AbstractLLSystem, method: str | None) -> None:
 @BOTH
 @METHODS
 def test_only_elapsed_time_matters(system: AbstractLLSystem, method: str | None) -> None:
-    """The start is at the first time: a shift of all times, by a power of two, changes nothing at all."""
+    """The start is at the first time, also at one alone: a shift of all times, by a power of two, changes no bit."""
     first, second = (nh.flow(system, **START, times=t + np.array([0.0, 1.0, 2.5]), method=method) for t in (0.0, 64.0))
     assert_same(first, second, "configuration", "momentum")
-
-
-@BOTH
-@METHODS
-def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
-    """One time gives the start alone."""
-    orbit = nh.flow(system, **START, times=[2.0], method=method)
-    assert len(orbit) == 1
-    assert np.abs(orbit.configuration[0] - np.eye(3)).max() <= 1e-15
-    assert orbit.multipliers.shape == (1, 1)
+    assert_same(
+        nh.flow(system, **START, times=[2.0], method=method), first[:1], "configuration", "momentum", "multipliers"
+    )
 
 
 @BOTH
 def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
     """A velocity, its restriction, its momentum and the restricted momentum start the same motion."""
     orbit = nh.flow(system, **START, times=(0.0, 2.0))
-    for start in ("body_velocity", "momentum"):
-        same = nh.flow(system, **{start: getattr(orbit, start)[0]}, times=(0.0, 2.0))
+    for name in ("body_velocity", "momentum", "restricted_momentum"):
+        same = nh.flow(system, **{name.replace("restricted_", ""): getattr(orbit, name)[0]}, times=(0.0, 2.0))
         assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
-    same = nh.flow(system, momentum=orbit.restricted_momentum[0], times=(0.0, 2.0))
-    assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
 
 
 def test_precision_is_local() -> None:
@@ -152,21 +146,12 @@ def test_precision_is_local() -> None:
     assert jax.numpy.zeros(1).dtype == (np.float64 if before else np.float32)
 
 
-def test_impossible_tolerance_is_an_outcome() -> None:
-    """A solve that cannot meet the tolerances raises with the good states, here the start alone."""
-    with pytest.raises(nh.OutcomeError, match=r"from time 0 to 1 \(rtol 1e-14, atol 1e-300\)") as caught:
-        nh.flow(TOP, restricted_velocity=(1e140, 2e140), times=(0.0, 1.0), rtol=1e-14, atol=1e-300)
-    assert caught.value.outcome == nh.Outcome.not_converged
-    assert len(caught.value.orbit) == 1
-
-
 # A bad argument is refused by name, with the requirement and what was got.
 test_refusals = refusals(
     ({"times": []}, r"`flow\(times=...\)` must hold at least one time"),
     ({"times": 1.0}, r"`flow\(times=...\)` must have shape \(any,\)"),
     ({"times": (0.0, 1.0, 1.0)}, r"strictly increasing or strictly decreasing. Got 1.0 after 1.0"),
     ({"times": (0.0, 2.0, 1.0)}, r"Got 1.0 after 2.0. Sort the times"),
-    ({"times": (0.0, 1.0, 0.0)}, r"Got 0.0 after 1.0"),
     ({"restricted_velocity": None, "momentum": (1, 0, 9.0)}, r"`flow\(momentum=...\)` must belong to an admissible"),
     ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
     ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),

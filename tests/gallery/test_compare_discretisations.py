@@ -5,17 +5,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from scripts import script
 
 import nonholo as nh
 
 pytestmark = pytest.mark.profile("paper", instead="test_the_page_quotes_what_the_script_prints")
 
 
-@pytest.fixture(scope="module", name="script")
-def gallery_script() -> ModuleType:
-    """Return the script as a module."""
-    return script("docs/gallery/compare_discretisations.py")
+SCRIPT = "docs/gallery/compare_discretisations.py"
 
 
 def test_matrix_and_skew_keep_everything(script: ModuleType) -> None:

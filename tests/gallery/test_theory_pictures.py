@@ -5,15 +5,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 import scripts
-from scripts import script
 
 import nonholo as nh
 
-
-@pytest.fixture(scope="module", name="script")
-def gallery_script() -> ModuleType:
-    """Return the script as a module."""
-    return scripts.script("docs/gallery/theory_pictures.py")
+SCRIPT = "docs/gallery/theory_pictures.py"
 
 
 @pytest.mark.parametrize(("name", "panels"), [("mirror", 1), ("fold", 2), ("deltoid", 1), ("substep", 1), ("kicks", 1)])
@@ -69,6 +64,6 @@ def test_the_three_angles_add_up_to_zero(script: ModuleType) -> None:
 
 def test_page_is_drawn() -> None:
     """A coarse page has two panels in space and four in the plane, and renders."""
-    figure = script("docs/gallery/loci.py").draw(resolution=6)
+    figure = scripts.script("docs/gallery/loci.py").draw(resolution=6)
     assert [axes.name for axes in figure.axes] == ["3d", "3d"] + 4 * ["rectilinear"]
     figure.canvas.draw()
