@@ -186,7 +186,7 @@ def test_a_fold_of_a_top_counts_twice() -> None:
     def momentum(x: np.ndarray) -> np.ndarray:
         return discrete.system.restrict(nh.discrete_legendre(discrete, group.exp(x @ rows)))
 
-    size = brentq(lambda size: np.linalg.det(derivatives(momentum, size * ray)), 0.1, 3.0, xtol=1e-14)
+    size = brentq(lambda size: np.linalg.det(derivatives(momentum, size * ray)), 0.1, 2.5, xtol=1e-14)
     folded = group.exp(size * ray @ rows)
     assert nh.fold_distance(discrete, folded) < 1e-8  # of difference quotients
     found = nh.displacements_over(discrete, momentum(size * ray))
