@@ -181,11 +181,6 @@ def test_what_is_changed_is_no_ready_system_any_more() -> None:
     assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.description[1] == {"pairs": 1, "coupling": 1.0}
 
 
-def _stored(**how: Any) -> Any:
-    """Return a short run."""
-    return nh.simulate(discrete(), **start(), **{"steps": 4, "store": "a.zarr"} | how)
-
-
 # As those of bodies: what only a store keeps, blocks that are no multiple, more than a disk holds.
 test_arguments_of_stores_are_refused = refusals(
     ({"store": None, "scenario": "mine"}, r"`simulate\(scenario=\.\.\.\)` must come with a store"),
@@ -194,7 +189,7 @@ test_arguments_of_stores_are_refused = refusals(
         r"`simulate\(checkpoint_every=\.\.\.\)` must be a multiple of save_every",
     ),
     ({"steps": 10**14}, "must fit on the disk"),
-    ask=lambda how: _stored(**how),
+    ask=lambda how: nh.simulate(discrete(), **start(), **{"steps": 4, "store": "a.zarr"} | how),
 )
 
 
