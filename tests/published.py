@@ -83,11 +83,6 @@ def spectrum(speed: float) -> Array:
     return np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [reduced(speed)[0]]]))
 
 
-def growth(speed: float) -> float:
-    """Return the largest real part of an eigenvalue."""
-    return float(spectrum(speed).real.max())
-
-
 def turning_state() -> tuple[float, float, Array, Array]:
     """Return height and slip of the front contact of a published state, and its accelerations: ours, those of others.
 

@@ -235,7 +235,10 @@ def test_images_multiply(name: str, base: int, depth: int) -> None:
 
 @pytest.mark.parametrize("name", ["sleigh", "top", "motion"])
 def test_each_node_follows_its_parent(name: str) -> None:
-    """The momenta along the constraint are those that arrive from the parent: the defining equation, complex too."""
+    """The momenta along the constraint are those that arrive from the parent: the defining equation, complex too.
+
+    All have the energy of the root, r . B^-1 r / 2 without conjugation.
+    """
     discrete, tree = _tree(name, 2)
     before, after = tree.displacement[tree.parent[1:]], tree.momentum[1:]
     images = before[:, None] @ discrete.system.group.basis @ np.linalg.inv(before)[:, None]
@@ -243,12 +246,6 @@ def test_each_node_follows_its_parent(name: str) -> None:
     missed = discrete.system.restrict(carried - after)
     size = np.abs(before).max((1, 2)) ** 2 * np.abs(tree.momentum[tree.parent[1:]]).max(1)
     assert np.abs(missed / size[:, None]).max() < 1e-12  # rounding of a product of three matrices
-
-
-@pytest.mark.parametrize("name", ["sleigh", "top", "motion"])
-def test_energy_is_that_of_the_root(name: str) -> None:
-    """Every image, complex ones included, has the energy of the root: r . B^-1 r without conjugation."""
-    discrete, tree = _tree(name, 2)
     r = discrete.system.restrict(tree.momentum)
     energy = np.einsum("ti,ij,tj->t", r, np.linalg.inv(discrete.system.constrained_inertia), r) / 2
     assert (np.abs(energy - energy[0]) / np.einsum("ti,ti->t", r.conj(), r).real).max() < 1e-12

@@ -102,20 +102,6 @@ def test_tangents_near_a_half_turn() -> None:
     assert np.abs(found - np.eye(2)).max() <= 1e-9
 
 
-def test_momenta_of_any_group_of_the_plane_and_space() -> None:
-    r"""The identity behind the compiled loops, $P = 2(p - ad*_x p)/h(1 + \tau)$, in all three directions."""
-    rng = np.random.default_rng(2)
-    for system in (nh.RigidBody(TENSOR), nh.LLSystem(nh.SE(2), PLANE, constraint_subspace=np.eye(3))):
-        x, group = rng.normal(size=(20, 3)), system.group
-        tau = (x * x).sum(axis=1) if group == nh.SO(3) else x[:, 0] ** 2
-        p = x @ system.inertia_operator
-        W = group.cayley(2 * x)
-        for side, sign in (("left", -1), ("right", 1)):
-            wanted = 2 * (p + sign * group.coad(x, p)) / (0.3 * (1 + tau))[:, None]
-            found = nh.discrete_legendre(nh.discretize(system, 0.3), W, side)
-            np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13)
-
-
 @pytest.mark.parametrize("name", READINGS)
 def test_a_row_has_its_bits_in_any_company(discrete: nh.Discretization, name: str) -> None:
     """What is read of two states alone, or of every second one, is what is read of all, to the bit."""

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from bodies import elsewhere, tensor
-from comparisons import assert_same
+from comparisons import assert_same, derivatives
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
@@ -53,21 +53,10 @@ def test_legendre_agrees_with_its_derivative(problem: Problem, side: str) -> Non
     group, rng = problem.system.group, np.random.default_rng(1)
     discrete = nh.discretize(problem.system, 0.3)
     W = np.stack([group.random(rng) for _ in range(5)])
-    closed = nh.discrete_legendre(discrete, W, side)
+    left, right = (nh.discrete_legendre(discrete, W, each) for each in ("left", "right"))
     defined = momenta_by_derivative(discrete_lagrangian(problem.system, 0.3), group, W, side)
-    assert np.abs(closed - defined).max() <= 1e-12 * np.abs(closed).max()
-    assert np.abs(
-        nh.discrete_legendre(discrete, W, "right") - group.coadjoint(W, nh.discrete_legendre(discrete, W))
-    ).max() < (1e-12 * np.abs(closed).max())
-
-
-def test_momentum_tends_to_the_continuous_one() -> None:
-    """P(exp(h omega)) -> I omega as h -> 0, to first order in h: momenta are physical."""
-    system = PROBLEMS[0].system
-    velocity = np.array([0.3, -0.2]) @ system.constraint_subspace
-    for h in (1e-2, 1e-3, 1e-4):
-        P = nh.discrete_legendre(nh.discretize(system, h), system.group.exp(h * velocity))
-        assert np.abs(P - system.inertia_operator @ velocity).max() < h
+    assert np.abs((left if side == "left" else right) - defined).max() <= 1e-12 * np.abs(defined).max()
+    assert np.abs(right - group.coadjoint(W, left)).max() < 1e-12 * np.abs(defined).max()
 
 
 def test_logarithmic_momenta_against_the_series() -> None:
@@ -98,8 +87,7 @@ def test_step_derivatives_against_differences(problem: Problem) -> None:
     def after(x: np.ndarray) -> np.ndarray:
         return nh.step(discrete, x).momentum
 
-    e = 1e-5
-    differences = np.stack([(after(r + e * u) - after(r - e * u)) / (2 * e) for u in np.eye(2)], axis=1)
+    differences = derivatives(after, r)
     with jax.enable_x64(True):
         forward = jax.jit(jax.jacfwd(after))(jnp.asarray(r))
         assert np.abs(forward - differences).max() < 1e-8
@@ -147,10 +135,7 @@ def test_definition_refuses_beyond_the_fold_like_the_closed_form() -> None:
     charts, codes = in_double(solve, momenta)
     accepted = 0
     for r, y, code in zip(momenta, charts, codes, strict=True):
-        try:
-            orbit = nh.simulate(discrete, momentum=r, steps=1, throw=False)
-        except nh.OutcomeError:  # pragma: no cover
-            continue
+        orbit = nh.simulate(discrete, momentum=r, steps=1, throw=False)
         if code == 0:
             accepted += 1
             assert len(orbit)

@@ -89,24 +89,3 @@ def test_however_far_beyond_the_fold_there_is_no_branch(name: str, scale: float)
     system, velocity = GENERAL[name]
     orbit = nh.simulate(nh.discretize(system, 1.0), restricted_velocity=scale * velocity, steps=1, throw=False)
     assert orbit.outcome == nh.Outcome.no_real_branch
-
-
-def _rolling_disk() -> tuple[nh.LLSystem, np.ndarray]:
-    """A disk that rolls on its edge: SE(2) x R with v1 = R phi', v2 = 0; m = 2, R = 0.5, inertias 0.3 and 0.25."""
-    group = nh.ProductGroup(nh.SE(2), nh.Translations(1))
-    inertia = np.diag([0.3, 2.0, 2.0, 0.25])
-    return nh.LLSystem(group, constraint_subspace=[[1, 0, 0, 0], [0, 0.5, 0, 1]], inertia_operator=inertia), np.array(
-        [0.7, 1.2]
-    )
-
-
-@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
-def test_the_rolling_disk_rolls_on_a_circle() -> None:
-    """Heading and wheel angle advance uniformly, and the wheel rolls on a circle of their ratio times its radius."""
-    system, velocity = _rolling_disk()
-    g = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=80).configuration
-    turn, roll = np.diff(np.unwrap(np.arctan2(g[:, 1, 0], g[:, 0, 0]))), np.diff(g[:, 3, 4])
-    assert max(np.ptp(turn), np.ptp(roll)) <= 1e-12
-    assert roll.mean() / 0.1 == pytest.approx(velocity[1], rel=1e-3)
-    radius = 0.5 * roll.mean() / turn.mean()
-    assert np.abs(np.hypot(g[:, 0, 2], g[:, 1, 2] - radius) - radius).max() <= 1e-11

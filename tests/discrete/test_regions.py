@@ -58,18 +58,6 @@ def test_between_the_saddle_and_the_center() -> None:
         assert ("between" in found.region) == between
 
 
-def test_every_energy_of_the_map_keeps_one_inner_value() -> None:
-    """Along a run below h*, D >= 3|c|^2, each step has one inner value and it is the one that the run takes."""
-    discrete = nh.discretize(_REGULAR, 0.5)
-    r = np.sqrt(0.5 * nh.critical_energies(discrete).saddle) * _direction(discrete)
-    orbit = nh.simulate(discrete, momentum=r, steps=3)
-    for W, after in zip(orbit.displacement[:-1], orbit.displacement[1:], strict=True):
-        found = nh.branches(discrete, displacement=W)
-        inner = np.flatnonzero(found.region == "inner")
-        assert len(inner) == 1
-        np.testing.assert_allclose(found.displacement[inner[0]], after, atol=1e-12)
-
-
 _WITHOUT = {
     "rod-like top": (nh.SuslovTop(np.outer([1.0, 0.2, 0.9], [1.0, 0.2, 0.9]) + 0.02 * np.eye(3)), [0.01, 0.02]),
     "SO(4)": (nh.SuslovTop(np.diag([1.0, 1.5, 2.0, 0.5])), [0.1, 0.2, 0.3]),

@@ -6,21 +6,10 @@ from collections.abc import Callable
 import jax
 import jax.numpy as jnp
 import numpy as np
+import published
 import pytest
 from accelerations import acceleration
-from published import (
-    C1,
-    EIGENVALUES,
-    K0,
-    K2,
-    SPEEDS,
-    M,
-    growth,
-    linear_equations,
-    rolling_disk,
-    spectrum,
-    turning_state,
-)
+from comparisons import derivatives
 from refusals import refusals
 from scipy.integrate import solve_ivp
 
@@ -33,9 +22,16 @@ ACCURATE = {"rtol": 1e-13, "atol": 1e-13}
 ROUTES = pytest.mark.profile("routes", instead="test_the_disk_has_the_equations_that_a_page_of_sympy_lacks")
 
 
-def solved(rate: Callable, first: Array, times: Array) -> Array:
+def solved(rate: Callable, first: Array, times: Array, **to: float) -> Array:
     """Return the solution at the times, a row each."""
-    return solve_ivp(rate, (0.0, times[-1]), first, t_eval=times, method="DOP853", **ACCURATE).y.T
+    return solve_ivp(rate, (0.0, times[-1]), first, t_eval=times, method="DOP853", **(to or ACCURATE)).y.T
+
+
+def order(ready: nh.examples.Example, flow: nh.lagrange_dalembert.CoordinateOrbit, steps: int) -> float:
+    """Return how fast the ends of runs tend to that of the flow, between two numbers of steps."""
+    runs = (ready.simulate(steps=n, time_step=flow.time[-1] / n) for n in (steps, 2 * steps))
+    coarse, fine = (np.abs(run.configuration[-1] - flow.configuration[-1]).max() for run in runs)
+    return np.log2(coarse / fine)
 
 
 def disk_by_newton_and_euler(_time: float, z: Array) -> list[float]:
@@ -61,10 +57,9 @@ def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     sin, cos = np.sin(0.25), np.cos(0.25)
     first = np.array([0.25, -0.4, 1.3 * cos, 2.0 + 1.3 * sin, 0.3, 0.0, 0.1, -0.2])
     exact = solved(disk_by_newton_and_euler, first, times)
-    found = ready.flow(times=times, **ACCURATE).configuration
-    assert np.abs(found - exact[:, [6, 7, 4, 0, 5]]).max() <= 1e-10
-    errors = [np.abs(ready.simulate(steps=n, time_step=2 / n).configuration[-1] - found[-1]).max() for n in (400, 800)]
-    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+    found = ready.flow(times=times, **ACCURATE)
+    assert np.abs(found.configuration - exact[:, [6, 7, 4, 0, 5]]).max() <= 1e-10
+    assert abs(order(ready, found, 400) - 2.0) <= 0.1
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -75,8 +70,8 @@ def test_the_disk_has_the_equations_that_a_page_of_sympy_lacks(seed: int) -> Non
     q, v = np.array([0.0, 0.0, 0.4, lean, 0.0]), np.array([np.cos(0.4) * rates[2], np.sin(0.4) * rates[2], *rates])
     with double_precision():
         found = np.asarray(of_the_disk(gravity)(jnp.asarray(q), jnp.asarray(v)))
-    published = rolling_disk(gravity, rates, lean)
-    assert np.abs(found[2:] - published).max() <= 1e-13 * np.abs(published).max()
+    wanted = published.rolling_disk(gravity, rates, lean)
+    assert np.abs(found[2:] - wanted).max() <= 1e-13 * np.abs(wanted).max()
 
 
 @functools.cache
@@ -194,11 +189,7 @@ def test_the_ball_in_the_bowl_is_a_spherical_pendulum_in_a_magnetic_field(spin: 
     assert np.abs(found.configuration[:, :2] - rho * solved(rates, first, times)[:, :2]).max() <= 1e-10
     constants = [f(found.configuration, found.body_velocity) for f in ready.conserved.values()]
     assert np.ptp(constants, axis=1).max() <= 1e-10
-    errors = [
-        np.abs(ready.simulate(steps=k, time_step=4 / k).configuration[-1] - found.configuration[-1]).max()
-        for k in (200, 400)
-    ]
-    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+    assert abs(order(ready, found, 200) - 2.0) <= 0.1
 
 
 @pytest.mark.profile("routes", keep=["one"])
@@ -254,27 +245,19 @@ def test_the_snake_moves_as_its_joints_and_its_energy_say() -> None:
 
     masses = np.array([m, m, m, m, m, m, J, J, J])
 
-    def slope(f: Callable[[Array], Array], q: Array, along: Array) -> Array:
-        """Return a derivative by differences of order eight, whose error is some 1e-13."""
-        weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
-        return sum(w * (f(q + k * 4e-3 * along) - f(q - k * 4e-3 * along)) for k, w in weights.items()) / 4e-3
+    def moved(q: Array) -> Array:
+        return derivatives(links, q) @ velocity(q)
 
     def rates(_time: float, z: Array) -> Array:
         """Gauss's principle: accelerations of the links, projected to the motions of the constraint."""
         q, joints = z[:5], z[5:]
-
-        def moved(x: Array) -> Array:
-            return np.stack([slope(links, x, row) for row in velocity(x).T], axis=1)
-
         v = velocity(q) @ joints
-        B, bias = moved(q), slope(moved, q, v) @ joints
+        B, bias = moved(q), derivatives(lambda s: moved(q + s * v) @ joints, np.zeros(1))[:, 0]
         return np.concatenate([v, np.linalg.solve(B.T * masses @ B, -(B.T * masses) @ bias)])
 
-    loose = solve_ivp(
-        rates, (0.0, 2.0), [*ready.configuration, 0.3, 0.5], t_eval=times, method="DOP853", rtol=1e-10, atol=1e-10
-    )
+    loose = solved(rates, np.array([*ready.configuration, 0.3, 0.5]), times, rtol=1e-10, atol=1e-10)
     found = ready.flow(times=times, **ACCURATE)
-    assert np.abs(found.configuration - loose.y[:5].T).max() <= 1e-8
+    assert np.abs(found.configuration - loose[:, :5]).max() <= 1e-8
     assert np.ptp(ready.conserved["energy"](found.configuration, found.body_velocity)) <= 1e-11
 
 
@@ -305,32 +288,26 @@ test_bad_parameters_are_refused = refusals(
 @pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
 def test_the_linear_equations_are_those_of_the_benchmark() -> None:
     """M from torques, C1, K0 and K2 from derivatives at two speeds: 14 digits of the largest entry of each."""
-    for matrix, published in zip(linear_equations(), (M, C1, K0, K2), strict=True):
-        assert np.abs(matrix - published).max() <= 1e-14 * np.abs(published).max()
+    matrices = published.M, published.C1, published.K0, published.K2
+    for found, wanted in zip(published.linear_equations(), matrices, strict=True):
+        assert np.abs(found - wanted).max() <= 1e-14 * np.abs(wanted).max()
 
 
 @pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
-@pytest.mark.parametrize("speed", EIGENVALUES)
+@pytest.mark.parametrize("speed", published.EIGENVALUES)
 def test_eigenvalues_are_those_of_the_table(speed: int) -> None:
     """To the last of its 14 decimals but one."""
-    listed = {complex(x) for x in EIGENVALUES[speed]} | {complex(x).conjugate() for x in EIGENVALUES[speed]}
-    assert max(min(abs(x - y) for y in spectrum(float(speed))) for x in listed) <= 2e-12
-
-
-@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
-def test_it_rides_upright_between_weave_and_capsize() -> None:
-    """The largest real part of an eigenvalue changes sign at the two published speeds."""
-    weave, capsize = SPEEDS
-    assert growth(weave + 1e-9) < 0.0 < growth(weave - 1e-9)
-    assert growth(capsize - 1e-9) < 0.0 < growth(capsize + 1e-9)
+    listed = np.array(published.EIGENVALUES[speed])
+    gaps = np.abs(published.spectrum(float(speed)) - np.concatenate([listed, listed.conj()])[:, None])
+    assert gaps.min(axis=1).max() <= 2e-12
 
 
 def test_accelerations_far_from_upright_are_published() -> None:
     """Of a turning, leaning, steered state: table 1 of Basu-Mandal et al., in its 13 digits, turned into our axes."""
-    height, slip, found, published = turning_state()
+    height, slip, found, wanted = published.turning_state()
     assert abs(height) <= 1e-13
     assert slip <= 1e-12
-    assert np.abs(found - published).max() <= 2e-12
+    assert np.abs(found - wanted).max() <= 2e-12
 
 
 @pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
@@ -351,4 +328,4 @@ def test_one_call_gives_the_weave_and_the_capsize_speed() -> None:
         ready = nh.examples.bicycle(speed=speed, lean_rate=0.0, steer_rate=0.0)
         return nh.linearize(ready.system, configuration=ready.configuration, body_velocity=ready.body_velocity)
 
-    assert np.abs(nh.critical_values(riding, (3.0, 8.0), samples=5) - SPEEDS).max() < 1e-9
+    assert np.abs(nh.critical_values(riding, (3.0, 8.0), samples=5) - published.SPEEDS).max() < 1e-9

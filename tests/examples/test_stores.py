@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import xarray
+from refusals import refusals
 from stopping import stopped_at
 from typer.testing import CliRunner
 
@@ -180,16 +181,16 @@ def test_what_is_changed_is_no_ready_system_any_more() -> None:
     assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.description[1] == {"pairs": 1, "coupling": 1.0}
 
 
-def test_arguments_of_stores_are_refused_as_those_of_bodies(tmp_path: Path) -> None:
-    """What only a store keeps, blocks that are no multiple, events of a run that has none."""
-    with pytest.raises(ValueError, match=r"`simulate\(scenario=\.\.\.\)` must come with a store"):
-        nh.simulate(discrete(), **start(), steps=4, scenario="mine")
-    with pytest.raises(ValueError, match=r"`simulate\(checkpoint_every=\.\.\.\)` must be a multiple of save_every"):
-        nh.simulate(discrete(), **start(), steps=4, save_every=2, store=tmp_path / "a.zarr", checkpoint_every=3)
-    with pytest.raises(ValueError, match="must fit on the disk"):
-        nh.simulate(discrete(), **start(), steps=10**14, store=tmp_path / "a.zarr")
-    nh.simulate(discrete(), **start(), steps=4, store=tmp_path / "b.zarr")
-    assert not (tmp_path / "a.zarr").exists()
+# As those of bodies: what only a store keeps, blocks that are no multiple, more than a disk holds.
+test_arguments_of_stores_are_refused = refusals(
+    ({"store": None, "scenario": "mine"}, r"`simulate\(scenario=\.\.\.\)` must come with a store"),
+    (
+        {"save_every": 2, "checkpoint_every": 3},
+        r"`simulate\(checkpoint_every=\.\.\.\)` must be a multiple of save_every",
+    ),
+    ({"steps": 10**14}, "must fit on the disk"),
+    ask=lambda how: nh.simulate(discrete(), **start(), **{"steps": 4, "store": "a.zarr"} | how),
+)
 
 
 def test_commands_show_extend_and_write_stores(tmp_path: Path) -> None:

@@ -1,14 +1,11 @@
 """Logarithms at their difficult places: half turns, several of them at once, clusters of angles, no logarithm."""
 
-import math
-
 import numpy as np
 import pytest
-from groups.examples import GROUPS, HEISENBERG, SL2, close, vectors
+from groups.examples import HEISENBERG, SL2, close, vectors
 from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refusals
-from scipy.special import bernoulli
 
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 
@@ -55,9 +52,10 @@ coordinates = st.lists(st.floats(-3, 3, allow_subnormal=False), min_size=3, max_
 
 @given(planar, coordinates, st.sampled_from([1.0, 1e-3, 1e-9, 0.0]))
 def test_log_inverts_exp(group: AbstractMatrixGroup, x: np.ndarray, scale: float) -> None:
-    """In closed form: exp(log(g)) = g for every angle, and log(exp(x)) = x below angle pi."""
+    """In closed form: exp(log(g)) = g for every angle, by the shorter way, and log(exp(x)) = x below angle pi."""
     g = group.exp(scale * x)
     assert close(group.exp(group.log(g)), g)
+    assert group.angle(group.log(g)) <= np.pi * (1 + 1e-15)
     if group.angle(scale * x) < 3:
         assert close(group.log(g), scale * x, 200)
 
@@ -69,14 +67,6 @@ def test_log_near_angle_pi(group: AbstractMatrixGroup, axis: list[float], gap: f
     g = group.exp((np.pi - gap) * np.array(axis))
     assert np.abs(group.exp(group.log(g)) - g).max() < 4e-15
     assert abs(group.angle(group.log(g)) - (np.pi - gap)) < 4e-15
-
-
-@pytest.mark.parametrize("axis", np.eye(3), ids=["e1", "e2", "e3"])
-@pytest.mark.parametrize("angle", [3.2, 4.0, 6.0, -3.5])
-def test_the_logarithm_goes_the_shorter_way(angle: float, axis: np.ndarray) -> None:
-    """A turn by more than a half is the rest of a full turn the other way."""
-    rest = angle - np.copysign(2 * np.pi, angle)
-    assert np.abs(SO(3).log(SO(3).exp(angle * axis)) - rest * axis).max() <= 1e-14
 
 
 def test_easy_and_difficult_rotations_mix() -> None:
@@ -113,16 +103,6 @@ def test_residuals_of_matrices_without_logarithm() -> None:
     """Infinite on the negative real axis; of a logarithm outside of the algebra its distance."""
     assert SL2.residual(-np.eye(2)) == SL2.residual(np.diag([-2.0, -0.5])) == np.inf
     assert abs(SL2.residual(np.diag([2.0, 1.0])) - np.log(2) / 2) < 1e-15
-
-
-@pytest.mark.parametrize("group", GROUPS, ids=str)
-def test_dexp_inverse_is_the_bernoulli_series(group: AbstractMatrixGroup) -> None:
-    """Sum B_k ad^k / k!, with B_1 = -1/2; sixty terms are exact for ad of norm below 3."""
-    for ad, found in zip(group.ad(x := vectors(group, 4, 0.3)), group.dexp_inverse(x), strict=True):
-        power, total = np.eye(group.dim), np.zeros_like(ad)
-        for k, number in enumerate(bernoulli(60)):
-            total, power = total + number * power / math.factorial(k), power @ ad
-        assert close(found, total, 200)
 
 
 @pytest.mark.parametrize("group", [SO(3), SE(2)], ids=str)

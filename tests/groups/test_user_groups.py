@@ -29,22 +29,6 @@ def test_badly_scaled_bases_are_taken() -> None:
     assert close(group.vee(group.hat(np.array([1e12, 1e-12, 1.0]))) * scales[:, 0, 0], np.ones(3))
 
 
-def test_a_group_from_a_basis_is_the_group_it_spans() -> None:
-    """SO(3) in an oblique basis: the same matrices, covectors that transform by the inverse transpose."""
-    change = np.array([[1.0, 2.0, 0.0], [0.0, 3.0, -1.0], [0.5, 0.0, 2.0]])
-    x, p = vectors(OBLIQUE, 2, 0.4)
-    g = OBLIQUE.exp(x)
-    assert close(g, nh.SO(3).exp(x @ change))
-    assert close(OBLIQUE.coadjoint(g, p), change @ nh.SO(3).coadjoint(g, np.linalg.solve(change, p)), 1000)
-    assert close(OBLIQUE.coad(x, p), change @ nh.SO(3).coad(x @ change, np.linalg.solve(change, p)), 1000)
-
-
-@pytest.mark.parametrize(("group", "stays"), [(HEISENBERG, True), (SL2, True), (OBLIQUE, True), (SL3, False)])
-def test_cayley_is_offered_where_it_stays_in_the_group(group: nh.MatrixGroup, stays: bool) -> None:
-    """On SL(2) determinants of the Cayley map are one, on SL(3) they are not."""
-    assert group.has_cayley == stays
-
-
 @pytest.mark.parametrize(
     ("first", "second", "other"),
     [
@@ -72,18 +56,6 @@ test_what_is_no_group_is_refused = refusals(
     (lambda: nh.SO(3).exp(np.zeros(4)), r"SO\(3\) \(coordinates\).*shape \(3,\).*vee"),
     (lambda: nh.SE(2).log(np.zeros((2, 2))), r"SE\(2\) \(element\).*hat"),
 )
-
-
-def test_products_act_by_blocks() -> None:
-    """exp, adjoint and coad of SO(3) x SO(3) are those of the factors; entries outside the blocks count as residual."""
-    x, p = vectors(TWO_BODIES, 2)
-    g = TWO_BODIES.exp(x)
-    assert np.array_equal(g[:3, :3], nh.SO(3).exp(x[:3]))
-    assert not g[:3, 3:].any()
-    assert close(TWO_BODIES.adjoint(g)[3:, 3:], nh.SO(3).adjoint(nh.SO(3).exp(x[3:])))
-    assert close(TWO_BODIES.coad(x, p), np.concatenate([nh.SO(3).coad(x[i : i + 3], p[i : i + 3]) for i in (0, 3)]))
-    g[0, 5] = 0.25
-    assert TWO_BODIES.residual(g) == 0.25
 
 
 def test_repr_names_sizes() -> None:

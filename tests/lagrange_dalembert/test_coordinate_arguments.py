@@ -53,12 +53,6 @@ def test_former_methods_name_the_function() -> None:
             getattr(owner, "fly")  # noqa: B009
 
 
-def test_a_flow_starts_from_a_momentum() -> None:
-    """The velocity (1, 0.5, 1) has the momentum (1, 0.5, 1), and so has any multiple of the form added to it."""
-    orbit = flow(body_velocity=None, momentum=np.array(V) + 3.0 * np.array([-1.0, 0.0, 1.0]))
-    assert np.abs(orbit.configuration - flow().configuration).max() <= 1e-14
-
-
 def test_integer_forms_are_forms() -> None:
     """A constant form may be written with integers; the particle then moves in the plane x = z."""
     plane = nh.LagrangeDAlembert(lagrangian, lambda q: jnp.array([[1, 0, -1]]), dimension=3)  # noqa: ARG005

@@ -84,25 +84,22 @@ def test_blocks_join_without_a_seam() -> None:
     """A run longer than one compiled block is the run of its parts: it can be taken up by displacement."""
     whole = run("midpoint", 0.05, 2500)
     at = 1500
-    rest = nh.simulate(
-        nh.discretize(SYSTEM, 0.05),
-        configuration=whole.configuration[at],
-        displacement=whole.displacement[at],
-        steps=50,
-    )
+    start = {"configuration": whole.configuration[at], "displacement": whole.displacement[at]}
+    rest = nh.simulate(nh.discretize(SYSTEM, 0.05), **start, steps=50)
     assert whole.configuration.shape == (2501, 3)
     assert whole.multipliers.shape == (2500, 1)
     assert np.abs(rest.configuration - whole.configuration[at : at + 51]).max() <= 1e-12
 
 
-@pytest.mark.profile("routes", instead="test_the_start_is_second_order_in_momentum")
 def test_momentum_starts_where_the_velocity_does() -> None:
-    """p_0 = dL/dv, and p_0 plus any multiple of the constraint form, set out with the same step."""
+    """p_0 = dL/dv, and p_0 plus any multiple of the constraint form, begin the same run and the same flow."""
     q, v = START["configuration"], START["body_velocity"]
     with jax.enable_x64(True):
         p = np.asarray(jax.grad(lagrangian, argnums=1)(q, v)) + 3.0 * np.array([-q[1], 0.0, 1.0])
     orbit = nh.simulate(nh.discretize(SYSTEM, 0.1), configuration=q, momentum=p, steps=5)
     assert np.abs(orbit.configuration - run("midpoint", 0.1, 5).configuration).max() <= 1e-14
+    flow, other = (nh.flow(SYSTEM, **how, times=[0, 1.0]) for how in (START, {"configuration": q, "momentum": p}))
+    assert np.abs(flow.configuration - other.configuration).max() <= 1e-14
 
 
 @pytest.mark.profile("routes", keep=["midpoint"])
@@ -118,31 +115,6 @@ def test_the_start_is_second_order_in_momentum(rule: str) -> None:
         admissible = np.array([[1.0, 0.0, y], [0.0, 1.0, 0.0]])
         errors.append(np.abs(admissible @ (orbit.momentum[-1] - flow.momentum[-1])).max())
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - 2.0) <= 0.1
-
-
-@pytest.mark.profile("routes", instead="test_the_midpoint_rule_is_reversible")
-@pytest.mark.parametrize("rule", RULES)
-def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
-    """L_d is symmetric for a Lagrangian even in v: the reversed displacement leads back."""
-
-    def even(q, v):  # noqa: ANN001, ANN202
-        return lagrangian(q, v) - 0.3 * q[0] * v[1]
-
-    discrete = nh.discretize(LagrangeDAlembert(even, forms, dimension=3, rule=rule), 0.1)
-    there = nh.simulate(discrete, **START, steps=100)
-    back = nh.simulate(discrete, configuration=there.configuration[-1], displacement=-there.displacement[-2], steps=99)
-    # errors of 200 steps, each of a few rounding units, on a motion that is not unstable
-    assert np.abs(back.configuration - there.configuration[:0:-1]).max() <= 1e-12
-
-
-@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
-def test_unconstrained_midpoint_conserves_quadratic_invariants() -> None:
-    """Without constraints the rule is the implicit midpoint rule: a plane oscillator keeps q_0 p_1 - q_1 p_0."""
-    free = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2)
-    orbit = nh.simulate(nh.discretize(free, 0.2), configuration=[1.0, 0.0], body_velocity=[0.2, 0.9], steps=1000)
-    q, p = orbit.configuration, orbit.momentum
-    assert orbit.multipliers.shape == (1000, 0)
-    assert np.ptp(q[:, 0] * p[:, 1] - q[:, 1] * p[:, 0]) <= 1e-12
 
 
 def test_regularity_has_no_units() -> None:
@@ -186,3 +158,45 @@ def test_functions_of_two_configurations_are_taken_too() -> None:
     assert np.abs(orbit.energy - expected.energy).max() <= 0.01 * np.abs(expected.energy).max()
     q, r = expected.configuration[:2]
     assert abs(found.regularity(q, r) - SYSTEM.regularity(q, r, time_step=h)) <= 1e-12
+
+
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
+def test_the_sleigh_moves_as_on_its_group() -> None:
+    """In (theta, x, y) with the discrete Lagrangian of the group route: the same poses, impulses and momenta.
+
+    Poses of size 40 after 200 steps, impulses in size and sign, and <P_k, v> agree to rounding, below 1e-11.
+    """
+    sleigh, h = nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.5, b=0.2), 0.15
+
+    def in_body(angle, v, xp=jnp):  # noqa: ANN001, ANN202
+        c, s = xp.cos(angle), xp.sin(angle)
+        return xp.stack([v[..., 0], c * v[..., 1] + s * v[..., 2], -s * v[..., 1] + c * v[..., 2]], axis=-1)
+
+    def kinetic(q, v):  # noqa: ANN001, ANN202
+        w = in_body(q[0], v)
+        return w @ np.asarray(sleigh.inertia_operator) @ w / 2
+
+    def pose(q):  # noqa: ANN001, ANN202
+        c, s = jnp.cos(q[0]), jnp.sin(q[0])
+        return jnp.array([[c, -s, q[1]], [s, c, q[2]], [0.0, 0.0, 1.0]])
+
+    def action(q, r, h):  # noqa: ANN001, ANN202
+        X = jnp.linalg.inv(pose(q)) @ pose(r) - jnp.eye(3)
+        return jnp.trace(X @ np.asarray(sleigh.homogeneous_mass_tensor) @ X.T) / (2 * h)
+
+    def blade(q):  # noqa: ANN001, ANN202
+        return jnp.array([[0.0, -jnp.sin(q[0]), jnp.cos(q[0])]])
+
+    own = {"discrete_lagrangian": action, "discrete_constraints": lambda q, r, _: blade((q + r) / 2) @ (r - q)}
+    system = LagrangeDAlembert(kinetic, blade, dimension=3, **own)
+    start, velocity = np.array([0.4, 1.0, -2.0]), np.array([1.0, -1.0, 0.0])
+    run = {"configuration": start, "body_velocity": in_body(-start[0], velocity, np)}
+    ours = nh.simulate(nh.discretize(system, h), **run, steps=200)
+    g = nh.SE(2).matrix_from_pose(np.array([np.cos(start[0]), np.sin(start[0]), *start[1:]]))
+    group = nh.simulate(nh.discretize(sleigh, h), body_velocity=velocity, configuration=g, steps=200)
+    turned = ours.configuration[:, 0] - group.heading
+    assert np.abs(turned - turned[0]).max() <= 1e-11
+    assert np.abs(ours.configuration[:, 1:] - group.position).max() <= 1e-11
+    assert np.abs(group.multipliers).max() > 0.1
+    assert np.abs(ours.multipliers - group.multipliers).max() <= 1e-11
+    assert np.abs(in_body(ours.configuration[:, 0], ours.momentum, np) - group.momentum).max() <= 1e-11

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from comparisons import assert_near
 from refusals import refusals
-from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, GroupOrbit, mass_tensor_lagrangian
@@ -80,50 +79,6 @@ def run(h: float, steps: int, **changes) -> GroupOrbit:  # noqa: ANN003
     if changes.keys() & {"displacement", "momentum"}:
         del start["body_velocity"]
     return nh.simulate(nh.discretize(MIXED, h), **(start | changes))
-
-
-@functools.cache
-def flow() -> GroupOrbit:
-    """Return the continuous motion of the mixed system at times 0, 1, 2."""
-    return nh.flow(MIXED, **START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
-
-
-def rates(_: float, z: np.ndarray) -> np.ndarray:
-    """Return the rates of (theta, x, y, omega, v1, v2), written out by hand."""
-    theta, x, y, omega, v1, v2 = z
-    inertia, p = BODY.inertia_operator, BODY.inertia_operator @ z[3:]
-    torque = np.array([p[1] * v2 - p[2] * v1, omega * p[2], -omega * p[1]])
-    dx, dy = np.cos(theta) * v1 - np.sin(theta) * v2, np.sin(theta) * v1 + np.cos(theta) * v2
-    angle, turning = 0.7 * np.sin(x) + 0.4 * np.cos(1.3 * y), 0.7 * np.cos(x) * dx - 0.52 * np.sin(1.3 * y) * dy
-    a, da = np.array([0, -np.sin(angle), np.cos(angle)]), -turning * np.array([0, np.cos(angle), np.sin(angle)])
-    matrix = np.block([[inertia, -a[:, None]], [a[None], np.zeros((1, 1))]])
-    solution = np.linalg.solve(matrix, np.append(torque, -da @ z[3:]))
-    return np.concatenate([[omega, dx, dy], solution[:3]])
-
-
-@pytest.mark.profile("routes", instead="test_the_flow_is_the_published_solution")
-def test_the_flow_solves_the_equations() -> None:
-    """Pose and velocity agree with an independent integration of hand-written equations."""
-    x, y = START["configuration"][:2, 2]
-    first = np.concatenate([[0.4, x, y], admissible(0.9, 1.0)])
-    z = solve_ivp(rates, (0, 2), first, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
-    assert np.abs(flow().configuration[-1, :2, 2] - z[1:3]).max() <= 1e-11
-    assert np.abs(flow().body_velocity[-1] - z[3:]).max() <= 1e-11
-    assert np.ptp(flow().energy) <= 1e-12
-
-
-@pytest.mark.profile("routes", instead="test_the_map_satisfies_its_constraint_and_has_order_two")
-def test_a_mixed_system_converges_with_order_two() -> None:
-    """Poses, momenta along the constraint and impulse / h, with its sign, tend to the flow; slope 2.0 +- 0.1."""
-    rows, exact = [], flow()
-    along = np.linalg.svd(np.asarray(blade(jnp.asarray(exact.configuration[-1]))))[2][1:]  # rows span the kernel of a
-    for n in (50, 100, 200, 400):
-        orbit = run(2 / n, n)
-        pose = np.abs(orbit.configuration[-1] - exact.configuration[-1]).max()
-        momentum = np.abs(along @ (orbit.momentum[-1] - exact.momentum[-1])).max()
-        rows.append((pose, momentum, abs(orbit.multipliers[n // 2 - 1, 0] * n / 2 - exact.multipliers[1, 0])))
-    for column in np.transpose(rows):
-        assert abs(-np.polyfit(np.log([50, 100, 200, 400]), np.log(column), 1)[0] - 2.0) <= 0.1
 
 
 def test_the_equations_hold_with_their_sign() -> None:
@@ -284,15 +239,6 @@ def test_forces_are_those_of_the_body_with_the_same_constraint() -> None:
         for n in (20, 40)
     ]
     assert abs(np.log2(np.abs(gaps[0]).max() / np.abs(gaps[1]).max()) - 2) <= 0.15
-
-
-@pytest.mark.profile("routes", instead="test_a_force_on_a_free_body_is_that_of_the_forced_map")
-def test_a_table_on_a_group_acts_as_controls_do() -> None:
-    """Half a row at each end of its step, beside other forces: states and energies are those of `nh.rollout`."""
-    pushes, start = np.random.default_rng(4).normal(size=(12, 3)), {**START, "body_velocity": admissible(0.9, 1.0)}
-    rolled = nh.rollout(nh.discretize(nh.Forced(MIXED, height, RUB), 0.1), **start, controls=pushes, steps=12)
-    orbit = nh.simulate(nh.discretize(nh.Forced(MIXED, height, (RUB, pushes)), 0.1), **start, steps=12)
-    assert_near(orbit, rolled, 1e-12, "configuration", "momentum", "energy")
 
 
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")

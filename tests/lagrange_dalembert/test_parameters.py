@@ -219,9 +219,8 @@ def test_stores_tell_the_parameters(tmp_path: Path) -> None:
     assert stored == {"mass": 0.6, "inertia": 1.1, "arm": 0.25, "pull": [-0.3, 0.4, 0.2]}
     with pytest.raises(ValueError, match="must be the discretization of the store"):
         nh.extend(path, 20, discrete=nh.discretize(system.with_parameters(mass=0.7), 0.05))
-    again = nh.extend(path, 20, discrete=nh.discretize(system, 0.05))
+    nh.extend(path, 20, discrete=nh.discretize(system, 0.05))
     assert np.array_equal(nh.load_orbit(path, discrete=nh.discretize(system, 0.05)).configuration, whole.configuration)
-    del again
 
 
 # Each bad argument is refused by its name.

@@ -80,7 +80,7 @@ def test_the_balance_closes_at_order_two(name: str) -> None:
 
 @pytest.mark.profile("routes", instead="test_a_spring_passes")
 def test_work_of_friction_is_known() -> None:
-    """A particle that friction stops: v = e^(-ct); and the flow of a table is refused."""
+    """A particle that friction stops: v = e^(-ct)."""
     body = nh.Forced(nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=1), force=nh.Friction([0.7]))
     times = np.linspace(0.0, 2.0, 4001)
     orbit = nh.flow(body, configuration=[0.0], body_velocity=[1.0], times=times)
@@ -96,18 +96,6 @@ def test_dissipation_less_work_is_that_of_motors(table: Any) -> None:
     orbit = nh.simulate(nh.discretize(body, 0.1), configuration=[0.0], body_velocity=[1.0], steps=9)
     assert np.diff(orbit.dissipation).min() > 0
     np.testing.assert_allclose(orbit.work + orbit.dissipation, 0.4 * orbit.configuration[:, 0], rtol=1e-2)
-
-
-def test_a_table_belongs_to_steps() -> None:
-    """It has no flow; its work needs every step."""
-    body = nh.Forced(nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=1), force=np.ones((9, 1)))
-    with pytest.raises(ValueError, match=r"flow\(system=...\)` must have forces at times. Got one force for each step"):
-        nh.flow(body, configuration=[0.0], body_velocity=[1.0], times=(0.0, 1.0))
-    empty = np.zeros((3, 1))
-    numbers = (empty, None, empty, empty, empty[:, :0], np.zeros(3), np.zeros(3))
-    thinned = nh.lagrange_dalembert.CoordinateOrbit(np.array([0.0, 0.2, 0.4]), *numbers, system=body, time_step=0.1)
-    with pytest.raises(ValueError, match=r"Orbit.work` must contain every step. Got steps .* Run with"):
-        _ = thinned.work
 
 
 def test_a_solver_reaches_the_end_of_the_flow() -> None:
@@ -169,9 +157,13 @@ def test_forces_on_groups_are_traced() -> None:
     np.testing.assert_allclose(slope, np.transpose(columns), rtol=0, atol=1e-11)
 
 
-FREE = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=2)
-# A force for each step has no vector field; a state of another size is refused.
+FREE, AT = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=2), np.zeros(2)
+TABLE, START = FREE.forced(None, np.ones((9, 2))), {"configuration": AT, "body_velocity": AT}
+THINNED = START | {"steps": 8, "save_every": 2}
+# A table belongs to steps: it has no vector field and no flow, and its work needs all; nor has a state of another size.
 test_what_has_no_vector_field_is_refused = refusals(
-    (lambda: nh.vector_field(FREE.forced(None, np.zeros((3, 2)))), r"`vector_field\(system=\.\.\.\)` must have forces"),
+    (lambda: nh.vector_field(TABLE), r"`vector_field\(system=\.\.\.\)` must have forces"),
+    (lambda: nh.flow(TABLE, **START, times=(0, 1)), r"flow\(system=...\)` must have forces at times. Got one force"),
+    (lambda: nh.simulate(nh.discretize(TABLE, 0.1), **THINNED).work, "work` must contain every step. Got .* Run with"),
     (lambda: nh.vector_field(FREE)(0.0, np.zeros(3)), r"must end in shape \(4"),
 )

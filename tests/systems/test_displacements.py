@@ -5,17 +5,11 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.systems import (
-    SuslovTop,
-    euler_angle_discrete_lagrangian,
-    in_exp_d,
-    mass_tensor_from_inertia,
-    trace_constraints,
-)
+from nonholo.systems import euler_angle_discrete_lagrangian, in_exp_d, mass_tensor_from_inertia, trace_constraints
 
 
 def _displacement(n: int, seed: int = 0) -> np.ndarray:
-    top = SuslovTop(np.eye(n))
+    top = nh.SuslovTop(np.eye(n))
     return top.group.exp(np.random.default_rng(seed).normal(size=n - 1) @ top.constraint_subspace)
 
 
@@ -41,7 +35,7 @@ def test_displacements_of_the_top_belong(n: int) -> None:
     R = nh.SO(n).random(np.random.default_rng(0))
     assert in_exp_d(W).all()
     assert np.abs(trace_constraints(R, R @ W)).max() < 1e-14
-    forbidden = nh.SO(n).exp(0.1 * SuslovTop(np.eye(n)).annihilator[0])
+    forbidden = nh.SO(n).exp(0.1 * nh.SuslovTop(np.eye(n)).annihilator[0])
     assert not in_exp_d(forbidden)
     assert np.abs(trace_constraints(np.eye(n), forbidden)).max() > 0.1
 
@@ -67,7 +61,8 @@ def test_spurious_sheet_in_five_dimensions() -> None:
 
 
 _STACK, _EYE, _SHAPE = np.stack([np.eye(3)] * 2), np.eye(3), r"configuration(_next)?=\.\.\.\)` must end in shape"
-test_what_are_no_two_real_matrices_of_one_size_is_refused = refusals(
+# Displacements and configurations are real matrices of one size, angles and moments triples.
+test_other_shapes_are_refused = refusals(
     (lambda: in_exp_d(np.ones(3)), r"in_exp_d\(displacement=\.\.\.\)` must end in shape \(3, 3\). Got shape \(3,\)"),
     (lambda: in_exp_d(np.full((3, 3), np.nan)), r"in_exp_d\(displacement=\.\.\.\)` must be finite"),
     (lambda: trace_constraints(_EYE, np.eye(4)), _SHAPE),
@@ -75,6 +70,10 @@ test_what_are_no_two_real_matrices_of_one_size_is_refused = refusals(
     (lambda: trace_constraints(1.0, 2.0), _SHAPE),
     (lambda: trace_constraints(_EYE + 0j, _EYE), r"trace_constraints\(configuration=...\)` must be real"),
     (lambda: trace_constraints(_STACK, _STACK + 0j), r"trace_constraints\(configuration_next=...\)` must be real"),
+    (
+        lambda: euler_angle_discrete_lagrangian((1, 1, 1), (0, 0, 0), (0, 0)),
+        r"s_next=\.\.\.\)` must end in shape \(3,\)",
+    ),
 )
 
 
@@ -94,29 +93,3 @@ def test_against_the_trace() -> None:
         expected = np.trace(J) - np.trace(_rotation(x).T @ _rotation(y) @ J)
         assert value == pytest.approx(expected, abs=1e-13)
         assert euler_angle_discrete_lagrangian(A, x, y) == pytest.approx(expected, abs=1e-13)
-
-
-def test_it_is_the_discrete_lagrangian_of_the_library() -> None:
-    """Divided by the time step it is l_d(W) of the matrix difference, whose half-step momentum the library uses."""
-    top, h = nh.SuslovTop(mass_tensor_from_inertia(np.diag([3.0, 2.5, 2.0]))), 0.2
-    x, turn, step = np.array([0.3, 0.8, -0.4]), np.array([0.2, -0.1, 0.3]), 1e-6
-    W = nh.SO(3).exp(turn)
-    R = _rotation(x)
-
-    def value(displacement: np.ndarray) -> float:
-        moved = R @ displacement
-        angles = np.array(
-            [np.arctan2(moved[0, 2], -moved[1, 2]), np.arccos(moved[2, 2]), np.arctan2(moved[2, 0], moved[2, 1])]
-        )
-        return euler_angle_discrete_lagrangian((3.0, 2.5, 2.0), x, angles) / h
-
-    momentum = [
-        (value(nh.SO(3).exp(step * e) @ W) - value(nh.SO(3).exp(-step * e) @ W)) / (2 * step) for e in np.eye(3)
-    ]
-    assert np.allclose(nh.discrete_legendre(nh.discretize(top, h), W), momentum, atol=1e-7)  # rounding eps/step
-
-
-def test_other_than_triples_are_refused() -> None:
-    """Angles and moments come as triples."""
-    with pytest.raises(ValueError, match=r"angles_next=\.\.\.\)` must end in shape \(3,\)"):
-        euler_angle_discrete_lagrangian((1, 1, 1), (0, 0, 0), (0, 0))

@@ -3,34 +3,22 @@
 import jax
 import numpy as np
 import pytest
-from bodies import GENERAL
+from bodies import GENERAL, mass_tensor
+from problems import EVERY
 from refusals import refusals
 
 import nonholo as nh
 from nonholo.systems import AbstractLRSystem, AbstractSystem, LRSystem, VeselovaTop
 
 _RNG = np.random.default_rng(7)
+_J = mass_tensor(nh.SO(3), _RNG)
+SPATIAL = {name: system for name, system in EVERY.items() if system.is_spatial} | {
+    "by forbidden rows": LRSystem(nh.SE(3), mass_tensor(nh.SE(3), _RNG), annihilator=_RNG.normal(size=(2, 6))),
+    "no motion": LRSystem(nh.SO(3), _J, np.empty((0, 3))),
+}
 
 
-def _tensor(n: int) -> np.ndarray:
-    points = np.random.default_rng(n).normal(size=(3 * n, n))
-    return points.T @ points / n
-
-
-SYSTEMS = [
-    *(VeselovaTop(_tensor(n)) for n in (3, 4, 5)),
-    LRSystem(nh.SO(4), _tensor(4), _RNG.normal(size=(3, 6))),
-    LRSystem(nh.SE(2), _tensor(3), np.eye(3)[:2]),
-    LRSystem(nh.SE(3), _tensor(4), None, annihilator=_RNG.normal(size=(2, 6))),
-    LRSystem(nh.SO(3), _tensor(3), np.empty((0, 3))),
-]
-
-
-def _name(system: AbstractLRSystem) -> str:
-    return f"{type(system).__name__}-{system.group!r}-{len(system.constraint_subspace)}"
-
-
-@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
+@pytest.mark.parametrize("system", SPATIAL.values(), ids=SPATIAL)
 def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
     """The trace form is S Ad^T I Ad S^T with Ad of the inverse, also for a stack of configurations."""
     group, S = system.group, system.constraint_subspace
@@ -42,7 +30,7 @@ def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
     assert np.allclose(system.spatial_inertia(group.identity), system.constrained_inertia, rtol=1e-14, atol=0)
 
 
-@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
+@pytest.mark.parametrize("system", SPATIAL.values(), ids=SPATIAL)
 def test_the_users_frame_is_the_canonical_one(system: AbstractLRSystem) -> None:
     """A system with a constraint in space is its own canonical form."""
     assert system.canonical is system
@@ -52,7 +40,7 @@ def test_the_users_frame_is_the_canonical_one(system: AbstractLRSystem) -> None:
 
 def test_spatial_inertia_of_traced_numbers() -> None:
     """The mass tensor and the configuration may be traced, and the energy differentiated in both."""
-    J, g, r = _tensor(3), nh.SO(3).exp(np.array([0.3, -0.2, 0.5])), np.array([0.4, -0.3])
+    J, g, r = _J, nh.SO(3).exp(np.array([0.3, -0.2, 0.5])), np.array([0.4, -0.3])
     with jax.enable_x64(True):
         energy = jax.jit(lambda J, g: VeselovaTop(J).constrained_energy(r, g))
         assert float(energy(J, g)) == pytest.approx(float(VeselovaTop(J).constrained_energy(r, g)), rel=1e-14)
@@ -69,7 +57,7 @@ def test_documented_rows_and_repr() -> None:
     assert top.annihilator.tolist() == [[0, 0, 1]]
     assert VeselovaTop(np.eye(4)).annihilator.tolist() == nh.SuslovTop(np.eye(4)).annihilator.tolist()
     assert "mass tensor J" in repr(top)
-    assert "constraint subspace" in repr(SYSTEMS[3])
+    assert "constraint subspace" in repr(SPATIAL["right-invariant on SE(3)"])
 
 
 # Each error names the owner, the requirement, what was got and the remedy.
@@ -82,13 +70,10 @@ test_bad_input_is_refused = refusals(
 )
 
 
-_SYSTEMS = {name: system for name, (system, _) in GENERAL.items()}
-
-
-@pytest.fixture(params=list(_SYSTEMS))
+@pytest.fixture(params=GENERAL)
 def system(request: pytest.FixtureRequest) -> AbstractSystem:
     """Return a system of either kind."""
-    return _SYSTEMS[request.param]
+    return GENERAL[request.param][0]
 
 
 @pytest.fixture
