@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL, magnet, weight
+from simulation.forces import SLEIGH, TOP, drive, start_of
 
 import nonholo as nh
 from nonholo.systems import AbstractSystem
 
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SYSTEMS: dict[str, AbstractSystem] = {
     "top": TOP,
     "tilted top": nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0)),
-    "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3),
+    "sleigh": SLEIGH,
     "sleigh with its mass behind": nh.ChaplyginSleigh(1.0, 1.0, -0.4, -0.2),
     "top on SO(4)": GENERAL["suslov 4"][0],
     "sleigh on SE(3)": GENERAL["sleigh 3"][0],
@@ -25,10 +25,6 @@ SYSTEMS: dict[str, AbstractSystem] = {
 def _own(g: np.ndarray) -> float:
     """A potential that is neither linear nor a spring."""
     return float(np.cos(g[0, 1]) + g[1, 0] ** 3 + 0.3 * g[-1, 0] * g[0, 0] + np.sin(g[0, -1]))
-
-
-def _drive(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
-    return np.cos(3 * time + np.arange(len(w))) - 0.4 * w * np.roll(w, 1) + 0.3 * g[0, 1] - 0.2 * w
 
 
 def _spring(system: AbstractSystem) -> nh.Spring:
@@ -48,8 +44,8 @@ FORCES: dict[str, Callable[[AbstractSystem], Any]] = {
     "none": lambda _: None,
     "friction": lambda s: nh.Friction(np.linspace(0.1, 0.4, s.group.dim)),
     "table": lambda s: np.random.default_rng(4).normal(size=(60, s.group.dim)),
-    "drive": lambda _: _drive,
-    "all": lambda s: (FORCES["friction"](s), FORCES["table"](s), _drive),
+    "drive": lambda _: drive,
+    "all": lambda s: (FORCES["friction"](s), FORCES["table"](s), drive),
 }
 CASES = [
     *((potential, "none") for potential in ("weight", "magnet", "spring", "own")),
@@ -57,11 +53,6 @@ CASES = [
     *(("weight", force) for force in ("friction", "table", "all")),
     ("all", "all"),
 ]
-
-
-def _start(system: AbstractSystem) -> dict[str, Any]:
-    g = system.group.random(np.random.default_rng(5))
-    return {"restricted_velocity": [0.5, -0.3, 0.4, 0.2][: system.rank], "configuration": g}
 
 
 def _legendre(system: AbstractSystem, W: np.ndarray, h: float) -> np.ndarray:
@@ -78,7 +69,7 @@ def test_orbits_obey_the_equations_of_the_step(name: str, acting: tuple[str, str
     """F(W) = r + h/2 f and r' = -F(W^-1) + h/2 f with the f of its definition, and T' - T = <f, X>."""
     system, h = SYSTEMS[name], 0.1
     forced = nh.Forced(system, POTENTIALS[acting[0]](system), FORCES[acting[1]](system))
-    orbit = nh.simulate(nh.discretize(forced, h), **_start(system), steps=20)
+    orbit = nh.simulate(nh.discretize(forced, h), **start_of(system), steps=20)
     g, W, r, group, S = orbit.configuration, orbit.displacement, orbit.restricted_momentum, system.group, (
         np.asarray(system.constraint_subspace)
     )  # fmt: skip
@@ -188,9 +179,9 @@ def test_compositions_keep_the_energy_and_have_their_order(name: str, order: int
     """Weight, spring and magnet together: T + U to rounding, pose and momentum of the order of the map."""
     system, errors = SYSTEMS[name], []
     forced = nh.Forced(system, (weight(system), _spring(system), magnet(system)))
-    flow = nh.flow(forced, **_start(system), times=(0.0, 0.8))
+    flow = nh.flow(forced, **start_of(system), times=(0.0, 0.8))
     for steps in (8, 16) if order == 2 else (4, 8):
-        orbit = nh.simulate(nh.discretize(forced, 0.8 / steps, order=order), **_start(system), steps=steps)
+        orbit = nh.simulate(nh.discretize(forced, 0.8 / steps, order=order), **start_of(system), steps=steps)
         assert np.ptp(orbit.energy) < 2e-14
         pose = np.abs(orbit.configuration[-1] - flow.configuration[-1]).max()
         errors.append(max(pose, np.abs(orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]).max()))
@@ -256,7 +247,7 @@ def test_a_reversed_motion_comes_back() -> None:
     """From the last pose with the opposite momentum the steps lead back to the start."""
     for name, system in SYSTEMS.items():
         discrete = nh.discretize(nh.Forced(system, (weight(system), _spring(system))), 0.1)
-        there = nh.simulate(discrete, **_start(system), steps=30)
+        there = nh.simulate(discrete, **start_of(system), steps=30)
         start = {"momentum": -there.restricted_momentum[-1], "configuration": there.configuration[-1]}
         back = nh.simulate(discrete, **start, steps=30)
         assert np.abs(back.restricted_momentum[-1] + there.restricted_momentum[0]).max() < 1e-12, name

@@ -49,22 +49,6 @@ def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> No
 
 
 @BOTH
-def test_starts_agree(system: Any) -> None:
-    """Velocities, restricted velocities and both kinds of momenta name the same starts."""
-    discrete, w = nh.discretize(system, 0.1), _velocities(4)
-    first = nh.ensemble(discrete, restricted_velocity=w, steps=1, save_every=1)
-    wanted = first.restricted_momentum[:, 1]
-    for start in (
-        {"body_velocity": w @ system.constraint_subspace},
-        {"momentum": first.momentum[:, 0]},
-        {"momentum": first.restricted_momentum[:, 0]},
-    ):
-        found = nh.ensemble(discrete, **start, steps=1)
-        assert found.outcome.tolist() == [0] * 4
-        _assert_close(found.restricted_momentum[:, 0], wanted, 1e-15)
-
-
-@BOTH
 @pytest.mark.parametrize("varied", [False, True], ids=["one body", "many bodies"])
 def test_bits_do_not_depend_on_the_company(system: Any, varied: bool) -> None:
     """A member alone, a chunk and the whole ensemble have the same bits, some members failing."""
@@ -183,39 +167,28 @@ def _poses(system: Any, count: int) -> np.ndarray:
     return system.group.exp(np.random.default_rng(9).normal(size=(count, system.group.dim)))
 
 
-@pytest.mark.parametrize("start", ["restricted_velocity", "displacement"])
+STARTS = "restricted_velocity", "body_velocity", "displacement", "momentum", "restricted_momentum"
+
+
+@pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize("name", PLACED)
 def test_members_start_where_they_are_put(name: str, start: str) -> None:
-    """From poses of their own and one of all members move as `simulate` does, from velocities and displacements."""
+    """From poses of their own, and one of all, members have the bits of `simulate`, whatever names their starts."""
     system, poses = PLACED[name], _poses(PLACED[name], 3)
     discrete, w = nh.discretize(system, 0.1), 0.2 * np.random.default_rng(2).normal(size=(3, system.rank))
     moved = [
         nh.simulate(discrete, restricted_velocity=v, configuration=g, steps=1) for v, g in zip(w, poses, strict=True)
     ]
-    rows = w if start == "restricted_velocity" else np.array([orbit.displacement[0] for orbit in moved])
-    batch = nh.ensemble(discrete, **{start: rows}, configuration=poses, steps=20, save_every=5)
+    rows = w if start == "restricted_velocity" else np.array([getattr(orbit, start)[0] for orbit in moved])
+    given, run = start.replace("restricted_momentum", "momentum"), {"steps": 20, "save_every": 5}
+    batch = nh.ensemble(discrete, **{given: rows}, configuration=poses, **run)
     assert batch.outcome.tolist() == [0, 0, 0]
     for member in range(3):
-        own: dict[str, Any] = {start: rows[member], "configuration": poses[member]}
-        orbit = nh.simulate(discrete, **own, steps=20, save_every=5)
-        for quantity in ("configuration", "restricted_momentum", "displacement", "energy"):
-            _assert_close(getattr(batch, quantity)[member], getattr(orbit, quantity), 1e-14)
+        orbit = nh.simulate(discrete, **{given: rows[member]}, configuration=poses[member], **run)
+        assert_member(batch, member, orbit, "time", "reduced_momentum", "cayley", "canonical_pose", *DECODED)
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
-    shared = nh.ensemble(discrete, **{start: rows[0]}, configuration=poses[:1], steps=20, save_every=5)
+    shared = nh.ensemble(discrete, **{given: rows[0]}, configuration=poses[:1], **run)
     assert np.array_equal(shared.configuration[0], batch.configuration[0])
-
-
-@pytest.mark.parametrize("name", PLACED)
-def test_flows_start_where_they_are_put(name: str) -> None:
-    """Members of flows start at their poses, as `flow` does."""
-    system, poses = PLACED[name], _poses(PLACED[name], 3)
-    w, times = np.random.default_rng(2).normal(size=(3, system.rank)), (0.0, 0.5, 2.0)
-    batch = nh.ensemble(system, restricted_velocity=w, configuration=poses, times=times)
-    for member in range(3):
-        alone = nh.flow(system, restricted_velocity=w[member], configuration=poses[member], times=times)
-        for quantity in ("configuration", "restricted_momentum", "body_velocity"):
-            _assert_close(getattr(batch, quantity)[member], getattr(alone, quantity), 1e-13)
-        assert batch.first_energy[member] == pytest.approx(alone.energy[0], rel=1e-14)
 
 
 DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
@@ -251,16 +224,6 @@ def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
         orbit = nh.simulate(discrete, restricted_velocity=velocity, configuration=pose, **run)
         assert_member(batch, member, orbit, "time", "reduced_momentum", "canonical_pose", "energy")
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
-
-
-def test_flows_under_forces_have_parameters() -> None:
-    """Each member is the flow of its own body."""
-    _, forces, parameters = DRIVEN["sleighs that rub"]
-    batch = nh.ensemble(nh.Forced(SLEIGH, **forces), body_velocity=(1.0, 0.5, 0.0), parameters=parameters, times=(0, 1))
-    for member, (a, mass) in enumerate(zip(*parameters.values(), strict=True)):
-        body = dataclasses.replace(SLEIGH, a=a, mass=mass)
-        alone = nh.flow(nh.Forced(body, **forces), body_velocity=(1.0, 0.5, 0.0), times=(0.0, 1.0))
-        assert_member(batch, member, alone, "reduced_momentum", "heading")
 
 
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])

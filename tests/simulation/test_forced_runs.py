@@ -1,4 +1,4 @@
-"""Stores, ensembles, events and pictures of motions under forces."""
+"""Stores and orbits of motions under forces, and what does not know of forces."""
 
 import json
 from collections.abc import Callable
@@ -10,20 +10,10 @@ import pytest
 import zarr
 from comparisons import assert_same
 from refusals import refusals
+from simulation.forces import HEAVY, RUB, SLEIGH, SLOPE, TOP
 
 import nonholo as nh
 
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
-TABLE = np.random.default_rng(1).normal(size=(30, 3))
-HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
-RUB = nh.Friction([0.1, 0.2, 0.3])
-FORCED: dict[str, nh.Forced] = {
-    "weight and friction": nh.Forced(TOP, HEAVY, RUB),
-    "a matrix of friction": nh.Forced(SLEIGH, force=nh.Friction(np.diag([0.1, 0.2, 0.3]) + 0.05)),
-    "table": nh.Forced(SLEIGH, nh.Gravity([0.1, -0.4], [0.2, 0.1]), TABLE),
-    "friction and table": nh.Forced(SLEIGH, force=(RUB, TABLE)),
-}
 START: dict[str, Any] = {"restricted_velocity": [0.5, -0.3]}
 READ = ("momentum", "pose", "energy")
 
@@ -59,12 +49,10 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     nh.sweep(task, nh.Grid({"time_step": [0.05]}), tmp_path / "sweep.zarr")
     with pytest.raises(ValueError, match="force is a callable"):
         nh.resume(tmp_path / "sweep.zarr")
-    nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
+    pushed = nh.discretize(nh.Forced(SLEIGH, force=np.ones((3, 3))), 0.05)
+    nh.save_orbit(nh.simulate(pushed, **START, steps=3), tmp_path / "table.zarr")
     told = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
     assert told["system"] == {"kind": "ChaplyginSleigh", "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3}}
-
-
-SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
 
 
 _FORCED = nh.Forced(TOP, HEAVY, RUB)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparisons import assert_same_run
 from stopping import stopped_in
 
 import nonholo as nh
@@ -16,7 +17,6 @@ from nonholo.io.orbits import Stream, standing
 MASS = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 TOP = nh.discretize(nh.SuslovTop(MASS), 0.1)
 ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
-STATE = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 CUTS = 3  # of each kind of run
 BLOCKS = 11  # of 44 states
 
@@ -53,27 +53,6 @@ RUNS: dict[str, tuple[nh.Discretization, list[Any], dict[str, Any]]] = {
                      {"restricted_velocity": (1.0, -0.6)}),
     "without poses": (TOP, [forward], {"restricted_velocity": (0.7, 0.5), "reconstruct": False}),
 }  # fmt: skip
-
-
-def same_states(one: nh.Orbit, other: nh.Orbit) -> bool:
-    """Tell whether the arrays of two orbits have the same bits."""
-    pairs = [(getattr(one, name), getattr(other, name)) for name in STATE]
-    return all(a is b is None or (a.shape == b.shape and a.tobytes() == b.tobytes()) for a, b in pairs)
-
-
-def same(one: nh.Orbit, other: nh.Orbit) -> bool:
-    """Tell whether two runs have the same states, ends and crossings, to the last bit."""
-    ends = [(run.outcome, run.save_every, run.events.names, run.events.stopped_by) for run in (one, other)]
-    crossings = zip(one.events.found, other.events.found, strict=True)
-    return (
-        ends[0] == ends[1]
-        and same_states(one, other)
-        and all(
-            same_states(a.states, b.states)
-            and all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ("step", "fraction", "direction"))
-            for a, b in crossings
-        )
-    )
 
 
 def begun(path: Path | None, events: list[Any], steps: int = 600, **options: Any) -> nh.Orbit:
@@ -114,7 +93,7 @@ def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch:
         path, (first, second) = tmp_path / f"{number}.zarr", np.sort(chance.integers(0, BLOCKS, 2))
         cut(path, monkeypatch, first, number == 1, functools.partial(nh.simulate, discrete, **run, store=path))
         cut(path, monkeypatch, second, number != 1, functools.partial(nh.resume, path, events=events))
-        assert same(nh.resume(path, events=events), undisturbed)
+        assert_same_run(nh.resume(path, events=events), undisturbed)
 
 
 @pytest.mark.profile("faults", keep=["2"])
@@ -124,8 +103,8 @@ def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
     path, events = tmp_path / "run.zarr", [entry, nh.Event(east, direction=1, stop=stop)]
     stored, whole = begun(path, events, steps=2000), begun(None, events, steps=2000)
     assert whole.events.stopped_by == "east"
-    assert same(stored, whole)
-    assert same(nh.resume(path, events=events), whole)
+    assert_same_run(stored, whole)
+    assert_same_run(nh.resume(path, events=events), whole)
     attributes = json.loads((path / "zarr.json").read_text())["attributes"]
     assert (attributes["stopped_by"], attributes["outcome"]) == ("east", "successful")
     assert json.loads(attributes["crossings"]) == [len(found) for found in whole.events.found]
@@ -138,7 +117,7 @@ def test_stop_that_was_not_cut_is_resumed(tmp_path: Path) -> None:
     path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1, stop=3)]
     with stopped_in("nonholo.io.orbits.Stream.finish"):
         begun(path, events)
-    assert same(nh.resume(path, events=events), begun(None, events))
+    assert_same_run(nh.resume(path, events=events), begun(None, events))
 
 
 @pytest.mark.profile("faults", keep=["lengths0"])
@@ -151,7 +130,7 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
         nh.extend(path, steps, events=events)
     whole = begun(None, events, sum(lengths))
     assert whole.events.stopped_by == "east"
-    assert same(nh.load_orbit(path), whole)
+    assert_same_run(nh.load_orbit(path), whole)
 
 
 def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,8 +139,8 @@ def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.
     path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 70.0, name="rare")
     for name, events in (("many", [TURNS, entry]), ("few", [rare])):
         stored = begun(path / name, events, 210)
-        assert same(stored, begun(None, events, 210))
-        assert same(nh.resume(path / name, events=events), stored)
+        assert_same_run(stored, begun(None, events, 210))
+        assert_same_run(nh.resume(path / name, events=events), stored)
     assert len(list((path / "few/run/events").rglob("c/*/0"))) == 1
     assert len(list((path / "many/run/events").rglob("c/*/0"))) > 210 // 35
 
@@ -176,7 +155,7 @@ def test_large_orbit_has_the_crossings_of_its_last_block(tmp_path: Path, monkeyp
     assert len(tail) == len(whole) % 5
     assert 0 < len(found) == np.count_nonzero(known.time > begin)
     assert np.array_equal(found.time, known.time[-len(found) :])
-    assert same(nh.load_orbit(tmp_path / "run.zarr"), whole)
+    assert_same_run(nh.load_orbit(tmp_path / "run.zarr"), whole)
 
 
 def opposite(orbit: nh.Orbit) -> np.ndarray:
@@ -221,7 +200,7 @@ def test_no_events_are_an_empty_list_of_them(begun_with: Any, going_with: Any, t
     """A run without events continues without, however that is said."""
     path, run = tmp_path / "run.zarr", {"body_velocity": (4.0, 1.0, 0.0), "save_every": 7}
     nh.simulate(ROUND, steps=70, events=begun_with, store=path, **run)
-    assert same_states(nh.extend(path, 70, events=going_with), nh.simulate(ROUND, steps=140, **run))
+    assert_same_run(nh.extend(path, 70, events=going_with), nh.simulate(ROUND, steps=140, **run))
 
 
 def test_bad_functions_leave_no_store(tmp_path: Path) -> None:
@@ -243,4 +222,4 @@ def test_a_function_that_fails_on_the_way_leaves_a_valid_store(tmp_path: Path) -
     now = standing(path)
     assert now is not None
     assert now.done == 273, "the last block of 35 steps that ends before step 300"
-    assert same(nh.resume(path, events=sound), begun(None, sound))
+    assert_same_run(nh.resume(path, events=sound), begun(None, sound))

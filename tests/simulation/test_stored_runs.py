@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL
+from comparisons import assert_same_run
 from damage import DAMAGE, damage
 from problems import PROBLEMS
 from refusals import refusals
@@ -25,19 +26,10 @@ from nonholo.systems import AbstractSystem
 
 SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
 WIDE = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
-NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose")
 COMPACT = ("canonical/reduced_momentum", "canonical/cayley", "canonical/pose")
 START = {"restricted_velocity": (0.7, -0.3)}
 FOLDING = nh.discretize(PROBLEMS[0].system, 1.0)
 FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
-
-
-def _same(one: nh.Orbit, other: nh.Orbit) -> bool:
-    return one.outcome == other.outcome and all(
-        getattr(one, name).shape == getattr(other, name).shape
-        and getattr(one, name).tobytes() == getattr(other, name).tobytes()
-        for name in NAMES
-    )
 
 
 def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
@@ -76,7 +68,7 @@ def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
     with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
         nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, events=events, **FOLDS)
     for found in (nh.load_orbit(path), nh.resume(path, events=events, throw=False)):
-        assert _same(found, whole)
+        assert_same_run(found, whole)
         assert found.events["level"].time.tolist() == whole.events["level"].time.tolist() != []
     with pytest.raises(ValueError, match="be a run that can continue"):
         nh.extend(path, 10, events=events)
@@ -87,7 +79,7 @@ def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path) -> No
     path = tmp_path / "run.zarr"
     with stopped_in("nonholo.io.orbits.Stream.finish"):
         nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=5, throw=False, **FOLDS)
-    assert _same(nh.resume(path, throw=False), nh.simulate(FOLDING, steps=500, throw=False, **FOLDS))
+    assert_same_run(nh.resume(path, throw=False), nh.simulate(FOLDING, steps=500, throw=False, **FOLDS))
 
 
 def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
@@ -97,7 +89,7 @@ def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     with stopped_at(3, full, r"No space left.*step 118 of 500\. Free space.*run\.zarr") as caught:
         _begun(path)
     assert caught.value.errno == errno.ENOSPC
-    assert _same(nh.resume(path), _whole())
+    assert_same_run(nh.resume(path), _whole())
 
 
 @pytest.mark.profile("faults", keep=["missing-run/blocks", "flipped-energy"])
@@ -117,7 +109,7 @@ def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_pat
     with pytest.warns(RuntimeWarning, match=named):
         again = nh.resume(path, events=events)
     for each in (again, nh.resume(path, events=events), nh.load_orbit(path)):
-        assert _same(each, orbit)
+        assert_same_run(each, orbit)
         assert np.array_equal(each.events["beat"].time, orbit.events["beat"].time)
 
 
@@ -150,7 +142,7 @@ except OSError as failure:
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
     assert "File too large. The run stands at step 0 of 9000. Free space, then call nonholo.resume" in done.stdout
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3)
-    assert _same(nh.resume(path), nh.simulate(discrete, body_velocity=(1.0, 0.3, 0.0), steps=9_000))
+    assert_same_run(nh.resume(path), nh.simulate(discrete, body_velocity=(1.0, 0.3, 0.0), steps=9_000))
 
 
 def test_other_versions_are_told(tmp_path: Path) -> None:
@@ -159,7 +151,7 @@ def test_other_versions_are_told(tmp_path: Path) -> None:
     _begun(path)
     versions = json.loads(read_attributes(path)["versions"]) | {"numba": "0.1"}
     edit_attributes(path, {"versions": json.dumps(versions)})
-    assert _same(nh.resume(path), _whole()), "a finished store is loaded in silence"
+    assert_same_run(nh.resume(path), _whole())  # a finished store is loaded in silence
     with pytest.warns(RuntimeWarning, match=r"begun with numba 0\.1 \(now .*last bits"):
         nh.extend(path, 10)
 
@@ -195,7 +187,7 @@ def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     orbit = _begun(path)
     assert told[0].startswith("BlockingIOError")
     assert f"is being written by process {os.getpid()} on " in told[0]
-    assert _same(orbit, _whole())
+    assert_same_run(orbit, _whole())
 
 
 _RUN = Path("run.zarr")
@@ -237,4 +229,4 @@ def test_a_replaced_store_is_not_written(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(Stream, "write", replaced_at_two)
     with pytest.raises(OSError, match="Another store has taken the place"):
         _begun(path)
-    assert _same(nh.load_orbit(path), other)
+    assert_same_run(nh.load_orbit(path), other)
