@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from comparisons import assert_joined, assert_near, assert_same
 from refusals import refusals
+from simulation.forces import HEAVY
 
 import nonholo as nh
 from nonholo.simulation.members import _ensemble
@@ -32,6 +33,7 @@ VELOCITY = (0.3, -1.0, 0.0)
 # v_1 = E tanh(s_0 + a E t / rho), with E = hypot(rho omega, v_1) and sinh s_0 = v_1/(rho omega).
 CUSP = -np.arcsinh(VELOCITY[1] / VELOCITY[0]) / (0.5 * np.hypot(*VELOCITY[:2]))
 TIMES = np.linspace(0.0, 10.0, 21)
+FLOW: dict[str, Any] = {"body_velocity": VELOCITY, "times": TIMES}
 ROWS = {"restricted_velocity": np.random.default_rng(3).normal(size=(9, 2)) * (1.5, 3.0)}
 TILT = nh.Event(lambda orbit: orbit.configuration[:, 0, 0], name="tilt")
 SIDE = nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="side", stop=2)
@@ -233,7 +235,7 @@ test_functions_that_give_no_number_are_refused = refusals(
 
 
 _ALONG: dict[str, Any] = {"restricted_velocity": (0.7, -0.3), "steps": 5}
-_FLOWS: dict[str, Any] = {"body_velocity": VELOCITY, "times": TIMES}
+_FALLING = nh.discretize(nh.Forced(TOP.system, HEAVY), 0.1)
 _WITHOUT, _THINNED = {"reconstruct": False}, "one with steps left out"
 # What cannot be watched is refused before any work, orbits with states left out too.
 test_what_cannot_be_watched_is_refused = refusals(
@@ -242,9 +244,13 @@ test_what_cannot_be_watched_is_refused = refusals(
     (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=[east, east]), "different names"),
     (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=[east], branch="smallest"), "principal branch"),
     (lambda: nh.simulate(MOTIONS["right-invariant"], **_ALONG, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (
+        lambda: nh.simulate(_FALLING, **_ALONG, **_WITHOUT, events=[nh.cusp]),
+        "a step that depends on the pose, without r",
+    ),
     (lambda: circle(**_WITHOUT, events=[east]), "reconstruct=True"),
     (lambda: nh.simulate(TOP, **_ALONG, events=[nh.cusp]), "watch a sleigh"),
-    (lambda: nh.flow(OFFSET, **_FLOWS, events=[lambda o: o.displacement[:, 0, 0]]), "displacement.*needs a discrete"),
+    (lambda: nh.flow(OFFSET, **FLOW, events=[lambda o: o.displacement[:, 0, 0]]), "displacement.*needs a discrete"),
     (lambda: nh.Event(east, direction=2), "Event"),
     (lambda: nh.Event(east, direction=True), r"Event\(direction=...\)` must be one of"),
     (lambda: nh.Event(east, stop=-1), "Event"),
@@ -268,8 +274,7 @@ def test_wide_tops_need_no_poses() -> None:
 @pytest.mark.parametrize("method", ["closed_form", None])
 def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) -> None:
     """A backward sleigh turns round once, at the time where tanh is zero; numerically as exact as the tolerances."""
-    flow = {"body_velocity": VELOCITY, "times": TIMES, "method": method, "rtol": 1e-13, "atol": 1e-14}
-    found = nh.flow(OFFSET, **flow, events=[nh.cusp]).events["cusp"]
+    found = nh.flow(OFFSET, **FLOW, method=method, rtol=1e-13, atol=1e-14, events=[nh.cusp]).events["cusp"]
     assert len(found) == 1
     assert found.step.tolist() == [int(np.searchsorted(TIMES, CUSP)) - 1]
     assert abs(found.time[0] - CUSP) < 4e-15 if method else abs(found.time[0] - CUSP) < 1e-12
@@ -278,10 +283,8 @@ def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) ->
 
 def test_events_leave_the_flow_alone() -> None:
     """With and without events the states are the same to the last bit; a stopping event cuts them."""
-    plain = nh.flow(OFFSET, body_velocity=VELOCITY, times=TIMES)
-    stopped = nh.flow(
-        OFFSET, body_velocity=VELOCITY, times=TIMES, events=[nh.Event(lambda o: o.time - 3.2, stop=True, name="t")]
-    )
+    stop = nh.Event(lambda orbit: orbit.time - 3.2, stop=True, name="t")
+    plain, stopped = (nh.flow(OFFSET, **FLOW, events=events) for events in (None, [stop]))
     assert stopped.events.stopped_by == "t"
     assert len(stopped) == 7
     assert np.array_equal(stopped.pose, plain.pose[:7])
@@ -300,10 +303,9 @@ def test_full_turns_between_two_times_are_known(method: str | None) -> None:
 
 def test_backward_flow() -> None:
     """Run backwards from after the cusp the flow finds it again, in the other direction."""
-    after = nh.flow(OFFSET, body_velocity=VELOCITY, times=(0.0, 10.0), method="closed_form")
-    found = nh.flow(
-        OFFSET, body_velocity=after.body_velocity[1], times=TIMES[::-1], method="closed_form", events=[nh.cusp]
-    ).events["cusp"]
+    after = nh.flow(OFFSET, **FLOW, method="closed_form")
+    back: dict[str, Any] = {"body_velocity": after.body_velocity[-1], "times": TIMES[::-1], "method": "closed_form"}
+    found = nh.flow(OFFSET, **back, events=[nh.cusp]).events["cusp"]
     assert found.direction.tolist() == [-1]
     assert abs(found.time[0] - CUSP) < 1e-14 * 10 * np.exp(5)  # errors of the state grow backwards as e^(aEt)
 
@@ -334,12 +336,6 @@ def test_events_between_requested_times_are_seen() -> None:
     assert orbit.events[0].step.tolist() == [1, 1, 1, 1, 2]
 
 
-def alone(batch: nh.Ensemble, member: int, events: list[nh.Event], **run: object) -> nh.Orbit:
-    """The run of one member by itself."""
-    start = {"restricted_velocity": ROWS["restricted_velocity"][member]}
-    return nh.simulate(batch.members.of(member), **start, steps=120, throw=False, events=events, **run)  # type: ignore
-
-
 CASES = {
     "sleighs": (SLEIGH, [SIDE, nh.cusp], {}),
     "sleighs that differ": (SLEIGH, [nh.cusp, SIDE], {"a": np.linspace(0.1, 0.9, 9), "time_step": np.full(9, 0.05)}),
@@ -357,7 +353,8 @@ def test_members_have_the_crossings_of_their_own_runs(name: str, every: int | No
     batch = nh.ensemble(discrete, **ROWS, steps=120, save_every=every, parameters=parameters or None, events=events)
     assert sum(int(found.count.sum()) for found in batch.events.found) > 5
     for member in range(len(batch)):
-        orbit = alone(batch, member, events, save_every=every or 1)
+        start = {"restricted_velocity": ROWS["restricted_velocity"][member], "save_every": every or 1}
+        orbit = nh.simulate(batch.members.of(member), **start, steps=120, throw=False, events=events)
         for event, found in zip(batch.events.found, orbit.events.found, strict=True):
             assert event.count[member] == len(found)
             for states, which in ((event.first, 0), (event.last, -1)):
