@@ -181,7 +181,9 @@ def test_members_start_where_they_are_put(name: str, start: str) -> None:
     assert batch.outcome.tolist() == [0, 0, 0]
     for member in range(3):
         orbit = nh.simulate(discrete, **{given: rows[member]}, configuration=poses[member], **run)
-        assert_member(batch, member, orbit, "time", "reduced_momentum", "cayley", "canonical_pose", *DECODED)
+        for quantity in ("reduced_momentum", "cayley", "canonical_pose", *DECODED):
+            error = 1e-14 if start == "body_velocity" else 0.0  # which a product of matrices restricts
+            _assert_close(getattr(batch, quantity)[member], getattr(orbit, quantity), error)
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
     shared = nh.ensemble(discrete, **{given: rows[0]}, configuration=poses[:1], **run)
     assert np.array_equal(shared.configuration[0], batch.configuration[0])
