@@ -81,7 +81,9 @@ def test_members_with_their_own_parameters(name: str) -> None:
     w = RNG.normal(size=(7, system.rank))
     batch = nh.ensemble(system, restricted_velocity=w, times=(0.0, 2.0), parameters=own)
     for member, velocity in enumerate(w):
-        alone = nh.flow(batch.members.of(member).system, restricted_velocity=velocity, times=(0.0, 2.0))
+        body = batch.members.of(member).system
+        assert all(np.array_equal(getattr(body.inside, field), values[member]) for field, values in own.items())
+        alone = nh.flow(body, restricted_velocity=velocity, times=(0.0, 2.0))
         _assert_same(batch.orbit(member), alone)
         wanted = alone.energy if system.is_forced else alone.energy[0]
         assert np.abs(batch.energy[member] / wanted - 1).max() < 1e-14
