@@ -21,7 +21,7 @@ def assert_near(one: Any, other: Any, tolerance: float, *names: str) -> None:
 
 
 def assert_same_run(one: Any, other: Any, every: int = 1) -> None:
-    """Compare bytes of a run with another, which keeps every so many of its states: these, ends and crossings."""
+    """Compare bytes of a run with another, which keeps every n-th of its states: these, ends and crossings."""
     _assert_same_states(one[::every], other)
     for a, b in zip(one.events.found, other.events.found, strict=True) if one.events else ():
         assert_same(a, b, "step", "fraction", "direction")

@@ -75,7 +75,7 @@ def _slope(errors: list[float]) -> float:
     return float(np.polyfit(range(len(errors)), -np.log2(errors), 1)[0])
 
 
-LATER = ["any d*-[!g]*", "right*-[!g]*", "suslov 4-[!g]*", "veselova*", "*-both functions", "sleigh on SE(3)-p*"]
+LATER = ["any d*-[!g]*", "right*)-[!g]*", "suslov 4-[!g]*", "veselova*", "*-both functions", "sleigh on SE(3)-p*"]
 LATER += ["tilted top-*"]
 
 

@@ -51,7 +51,7 @@ def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 def _errors(forced: nh.Forced, start: Any, end: Any, time: float, *counts: int) -> np.ndarray:
-    """Return by how much orbits of so many steps miss the velocity and the pose at the end of a time."""
+    """Return by how much orbits miss the velocity and the pose at the end of a time, for numbers of steps."""
     missed = []
     for steps in counts:
         discrete = nh.discretize(forced, time / steps)
