@@ -20,6 +20,26 @@ def assert_near(one: Any, other: Any, tolerance: float, *names: str) -> None:
         assert np.abs(getattr(one, name) - getattr(other, name)).max(initial=0.0) < tolerance, name
 
 
+def assert_same_run(one: Any, other: Any, every: int = 1) -> None:
+    """Compare bytes of a run with another, which keeps every n-th of its states: these, ends and crossings."""
+    _assert_same_states(one[::every], other)
+    for a, b in zip(one.events.found, other.events.found, strict=True) if one.events else ():
+        assert_same(a, b, "step", "fraction", "direction")
+        _assert_same_states(a.states, b.states)
+        assert (a.after is None) == (b.after is None)
+        if a.after is not None:
+            _assert_same_states(a.after, b.after)
+    logs = [(run.events.names, run.events.stopped_by) if run.events else () for run in (one, other)]
+    assert (one.outcome, logs[0]) == (other.outcome, logs[1])
+    assert one.save_every * every == other.save_every
+
+
+def _assert_same_states(one: Any, other: Any) -> None:
+    for name in (*STATE, "turned"):
+        mine, theirs = getattr(one, name), getattr(other, name)
+        assert mine is theirs is None or (mine.shape, mine.tobytes()) == (theirs.shape, theirs.tobytes()), name
+
+
 def assert_member(batch: Any, member: int, alone: Any, *names: str) -> None:
     """Compare bits of a member with those of a run or flow alone."""
     for name in names or STATE:

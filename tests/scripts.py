@@ -1,9 +1,13 @@
-"""Scripts of the repository as modules."""
+"""Scripts of the repository as modules, and what Python prints in a process of its own."""
 
 import importlib.util
+import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 
@@ -20,3 +24,10 @@ def script(path: str) -> ModuleType:
         sys.path.append(folder)  # of what scripts share
     spec.loader.exec_module(module)
     return module
+
+
+def printed(*arguments: str, cwd: Path | None = None, **variables: str) -> Any:
+    """Return the JSON that Python prints with arguments, in a folder, under variables of the environment."""
+    command, environment = [sys.executable, *arguments], {**os.environ, **variables}
+    done = subprocess.run(command, cwd=cwd, env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
+    return json.loads(done.stdout or "null")

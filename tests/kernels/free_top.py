@@ -94,9 +94,8 @@ def motions(system: nh.SuslovTop) -> dict[str, Any]:
     two, four = nh.discretize(system, 0.5), nh.discretize(system, 0.5, order=4)
     run, composed = (nh.simulate(each, restricted_velocity=VELOCITY, steps=STEPS) for each in (two, four))
     many = nh.ensemble(two, restricted_velocity=[VELOCITY, (0.1, 0.2), (99.0, 0.0)], steps=STEPS)
-    own = nh.ensemble(
-        two, restricted_velocity=[VELOCITY] * 2, steps=STEPS, parameters={"mass_tensor": [system.mass_tensor] * 2}
-    )
+    tensors = {"mass_tensor": [system.mass_tensor] * 2}
+    own = nh.ensemble(two, restricted_velocity=[VELOCITY] * 2, steps=STEPS, parameters=tensors)
     with tempfile.TemporaryDirectory() as folder:
         store = f"{folder}/new.zarr"
         nh.simulate(two, restricted_velocity=VELOCITY, steps=STEPS // 2, store=store)

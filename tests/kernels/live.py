@@ -4,6 +4,7 @@ python live.py bits [NAME ...]   # a digest of the results of each run
 NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
 """
 
+import functools
 import hashlib
 import itertools
 import json
@@ -140,19 +141,13 @@ def past_pi() -> Arrays:
     return [orbit.reduced_momentum, orbit.cayley]
 
 
-def flows(system: Any, method: str | None = None) -> Arrays:
-    """Return a continuous motion."""
-    velocity = np.random.default_rng(4).normal(size=len(system.constraint_subspace))
-    orbit = nh.flow(system, restricted_velocity=velocity, times=np.linspace(0.0, 5.0, 6), method=method)
-    between = orbit.at(np.linspace(4.9, 0.1, 7))
-    return [orbit.reduced_momentum, orbit.canonical_pose, between.reduced_momentum, between.canonical_pose]
-
-
-def momenta_of_flows(system: Any) -> Arrays:
-    """Return the momenta of a continuous motion, without its poses."""
+def flows(system: Any, method: str | None = None, *, reconstruct: bool = True) -> Arrays:
+    """Return a continuous motion, and states between, with poses or without."""
     velocity = np.random.default_rng(4).normal(size=system.rank) / np.sqrt(system.rank)
-    orbit = nh.flow(system, restricted_velocity=velocity, times=np.linspace(0.0, 5.0, 6), reconstruct=False)
-    return [orbit.reduced_momentum, orbit.at(np.linspace(4.9, 0.1, 7)).reduced_momentum]
+    how: dict[str, Any] = {"times": np.linspace(0.0, 5.0, 6), "method": method, "reconstruct": reconstruct}
+    orbit = nh.flow(system, restricted_velocity=velocity, **how)
+    both = orbit, orbit.at(np.linspace(4.9, 0.1, 7))
+    return [x for each in both for x in (each.reduced_momentum, each.canonical_pose) if x is not None]
 
 
 def members_of_flows(system: Any) -> Arrays:
@@ -178,71 +173,50 @@ def body(group: Any, k: int, seed: int) -> nh.LLSystem:
     return nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, k, rng))
 
 
+def top(n: int) -> nh.SuslovTop:
+    """Return a top in n dimensions."""
+    return nh.SuslovTop(mass_tensor(nh.SO(n), np.random.default_rng(n)))
+
+
 def sleigh(n: int) -> nh.MultidimensionalSleigh:
     """Return a sleigh in n dimensions."""
     rng = np.random.default_rng(n)
     return nh.MultidimensionalSleigh(1.3, 0.4 * rng.normal(size=n) / np.sqrt(n), mass_tensor(nh.SO(n), rng))
 
 
-RUNS: dict[str, Callable[[], Arrays]] = {
-    "sleighs": lambda: members(SLEIGH),
-    "own sleighs": lambda: members(SLEIGH, ("mass", "inertia")),
-    "tops": lambda: members(TOP),
-    "sleighs of an oblique blade": lambda: members(
-        nh.LLSystem(nh.SE(2), np.diag([0.6, 0.7, 1.0]), annihilator=[[0.2, -0.6, 0.8]])
-    ),
-    "tops of an oblique axis": lambda: members(nh.LLSystem(nh.SO(3), TOP.mass_tensor, annihilator=[[1.0, 2.0, 2.0]])),
-    "own tops": lambda: members(TOP, ("mass_tensor",)),
-    "top": lambda: orbits(TOP),
-    "sleigh": lambda: orbits(SLEIGH),
-    "top of order 4": lambda: orbits(TOP, 4),
-    "sleigh of order 4": lambda: orbits(SLEIGH, 4),
-    "top on SO(5)": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5)))),
-    "top on SO(30)": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(30), np.random.default_rng(30)))),
-    "sleigh on SE(4)": lambda: orbits(sleigh(4)),
-    "sleigh on SE(30)": lambda: orbits(sleigh(30)),
-    "top on SO(5) of order 4": lambda: orbits(nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), 4),
-    "sleigh on SE(4) of order 4": lambda: orbits(sleigh(4), 4),
-    "any d on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0]),
-    "any d on SE(3)": lambda: orbits(GENERAL["any d on SE(3)"][0]),
-    "slowly on SE(3)": lambda: orbits(GENERAL["any d on SE(3)"][0], size=0.1),
-    "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
-    "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
-    "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8), size=WIDE),
-    "any d on SO(5)": lambda: orbits(body(nh.SO(5), 3, 5), size=WIDE),
-    "nearest values of a top": lambda: nearest(TOP),
-    "nearest values of a sleigh": lambda: nearest(SLEIGH),
-    "a top past angle pi": lambda: past_pi(),
-    "what is read of a top": lambda: read(TOP),
-    "what is read of a sleigh": lambda: read(nh.ChaplyginSleigh(2.0, 0.7, -0.5, 0.3)),
-    "flow of a top": lambda: flows(TOP),
-    "flow of a sleigh": lambda: flows(SLEIGH),
-    "momenta of a sleigh on SE(200)": lambda: momenta_of_flows(
-        nh.MultidimensionalSleigh.arrowhead(1.3, np.linspace(0.4, 0, 200), np.linspace(1, 2, 200), np.full(199, 0.01))
-    ),
-    "flows of tops": lambda: members_of_flows(TOP),
-    "flows of sleighs": lambda: members_of_flows(SLEIGH),
-    "top under springs and kicks": lambda: balanced(TOP),
-    "sleigh under springs and kicks": lambda: balanced(SLEIGH),
-    "heavy free body": lambda: forced(nh.RigidBody(np.diag([1.0, 1.2, 0.7]))),
-    "flow of a heavy top": lambda: flows(nh.Forced(TOP, nh.Gravity([0.1, -0.2, -2.0], [0.2, 0.1, 0.5]))),
-    "flow of a sleigh on a slope": lambda: flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
-    "flows of sleighs on a slope": lambda: members_of_flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
-    "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
-    "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
-    "top with forces": lambda: forced(TOP),
-    "sleigh with forces": lambda: forced(SLEIGH),
-    "top on SO(4) with forces": lambda: forced(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
-    "any d on SO(4) with forces": lambda: forced(GENERAL["any d on SO(4)"][0]),
-    "top under functions": lambda: driven(TOP),
-    "sleigh under functions": lambda: driven(SLEIGH),
-    "top on SO(4) under functions": lambda: driven(nh.SuslovTop(mass_tensor(nh.SO(4), np.random.default_rng(4)))),
-    "in coordinates": in_coordinates,
-    "a fold on SO(4)": lambda: orbits(GENERAL["any d on SO(4)"][0], size=20.0),
-    "a fold of a top on SO(5)": lambda: orbits(
-        nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(5))), size=20.0
-    ),
+ANY, SPACE, TURNED = (GENERAL[kind][0] for kind in ("any d on SO(4)", "any d on SE(3)", "right-invariant on SE(3)"))
+HANGING = nh.Forced(TOP, nh.Gravity([0.1, -0.2, -2.0], [0.2, 0.1, 0.5]))
+SLIDING = nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))
+OBLIQUE_BLADE = nh.LLSystem(nh.SE(2), np.diag([0.6, 0.7, 1.0]), annihilator=[[0.2, -0.6, 0.8]])
+OBLIQUE_TOP = nh.LLSystem(nh.SO(3), TOP.mass_tensor, annihilator=[[1.0, 2.0, 2.0]])
+WIDE_SLEIGH = nh.MultidimensionalSleigh.arrowhead(
+    1.3, np.linspace(0.4, 0, 200), np.linspace(1, 2, 200), np.full(199, 0.01)
+)
+_order_4 = functools.partial(orbits, order=4)
+MOTIONS: dict[str, list[Callable[[], Arrays]]] = {
+    "members": [functools.partial(members, each) for each in (SLEIGH, TOP, OBLIQUE_BLADE, OBLIQUE_TOP)],
+    "members of their own": [lambda: members(SLEIGH, ("mass", "inertia")), lambda: members(TOP, ("mass_tensor",))],
+    "orbits": [functools.partial(orbits, each) for each in (TOP, SLEIGH, top(5), top(30), sleigh(4), sleigh(30))],
+    "orbits by matrices": [functools.partial(orbits, each) for each in (ANY, SPACE, TURNED)],
+    "orbits of order 4": [functools.partial(_order_4, each) for each in (TOP, SLEIGH, top(5), sleigh(4), ANY)],
+    "slow orbits": [functools.partial(orbits, SPACE, size=0.1)],
+    "orbits of many rows": [functools.partial(orbits, body(nh.SO(n), k, n), size=WIDE) for n, k in ((8, 4), (5, 3))],
+    "folds": [functools.partial(orbits, each, size=20.0) for each in (ANY, top(5))],
+    "past pi": [past_pi],
+    "nearest values": [functools.partial(nearest, each) for each in (TOP, SLEIGH)],
+    "what is read": [functools.partial(read, each) for each in (TOP, nh.ChaplyginSleigh(2.0, 0.7, -0.5, 0.3))],
+    "flows": [functools.partial(flows, each) for each in (TOP, SLEIGH, HANGING, SLIDING, TURNED)],
+    "flows in closed form": [functools.partial(flows, TOP, "closed_form")],
+    "momenta of flows": [functools.partial(flows, WIDE_SLEIGH, reconstruct=False)],
+    "members of flows": [functools.partial(members_of_flows, each) for each in (TOP, SLEIGH, SLIDING)],
+    "springs and kicks": [functools.partial(balanced, each) for each in (TOP, SLEIGH)],
+    "forces": [
+        functools.partial(forced, each) for each in (TOP, SLEIGH, top(4), ANY, nh.RigidBody(np.diag([1.0, 1.2, 0.7])))
+    ],
+    "functions": [functools.partial(driven, each) for each in (TOP, SLEIGH, top(4))],
+    "coordinates": [in_coordinates],
 }
+RUNS = {f"{name} {k}": run for name, runs in MOTIONS.items() for k, run in enumerate(runs)}
 
 
 def digest(arrays: Arrays) -> str:

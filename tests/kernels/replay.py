@@ -5,6 +5,7 @@ python replay.py bits FILE [THREADS [LIBRARY]]   # the way, and a digest of what
 """
 
 import concurrent.futures
+import functools
 import gzip
 import hashlib
 import importlib
@@ -48,6 +49,10 @@ def _top(rng: np.random.Generator) -> Any:
     return nh.SuslovTop(_tensor(nh.SO(3), rng))
 
 
+def _wide_top(rng: np.random.Generator) -> Any:
+    return nh.SuslovTop(_tensor(nh.SO(int(rng.integers(4, 7))), rng))
+
+
 def _mean(rng: np.random.Generator) -> Any:
     n = int(rng.integers(3, 7))
     return nh.MultidimensionalSleigh(10 ** rng.uniform(-1, 1), rng.normal(size=n), _tensor(nh.SO(n), rng))
@@ -77,23 +82,14 @@ def _many(system: Any, velocity: np.ndarray) -> Any:
     return nh.ensemble(nh.discretize(system, 0.2), restricted_velocity=velocities, steps=STEPS)
 
 
-KINDS: list[tuple[Callable[..., Any], Callable[..., Any]]] = [
-    (_sleigh, _simulated),
-    (_top, _simulated),
-    (lambda rng: nh.SuslovTop(_tensor(nh.SO(int(rng.integers(4, 7))), rng)), _simulated),
-    (_mean, _simulated),
-    (_any, _simulated),
-    (_any, lambda system, velocity: _simulated(system, velocity, 4)),
-    (_sleigh, lambda system, velocity: _simulated(system, velocity, 4)),
-    (_top, _pushed),
-    (_sleigh, _pushed),
-    (_mean, _pushed),
-    (_top, _flowing),
-    (_sleigh, _flowing),
-    (_any, _flowing),
-    (_top, _many),
-    (_sleigh, _many),
-]
+_BODIES_OF_RUNS: dict[Callable[..., Any], tuple[Callable[..., Any], ...]] = {
+    _simulated: (_sleigh, _top, _wide_top, _mean, _any),
+    functools.partial(_simulated, order=4): (_any, _sleigh),
+    _pushed: (_top, _sleigh, _mean),
+    _flowing: (_top, _sleigh, _any),
+    _many: (_top, _sleigh),
+}
+KINDS = [(make, run) for run, bodies in _BODIES_OF_RUNS.items() for make in bodies]
 
 
 def _at(address: Callable[[Any], int], kernel: Any, arguments: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -3,7 +3,6 @@
 import mpmath
 import numpy as np
 import pytest
-from bodies import GENERAL
 
 import nonholo as nh
 from nonholo import kernels
@@ -14,7 +13,6 @@ from nonholo.systems import AbstractSystem
 BODIES: dict[str, tuple[AbstractSystem, list[float]]] = {
     "top": (nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), [0.5, -0.3]),
     "sleigh": (nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), [0.5, -0.3]),
-    "suslov 4": (GENERAL["suslov 4"][0], [0.3, -0.2, 0.4]),
 }
 
 

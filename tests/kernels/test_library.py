@@ -2,18 +2,14 @@
 
 import gzip
 import importlib
-import json
-import os
 import pickle
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from bodies import GENERAL
-from scripts import script
+from scripts import printed, script
 
 import nonholo as nh
 from nonholo.base import compiled
@@ -37,9 +33,7 @@ print(json.dumps([way_of_kernels(), "numba" in sys.modules, rows]))
 
 
 def _ran(**variables: str) -> Any:
-    environment = {**os.environ, "NUMBA_BOUNDSCHECK": "0", **variables}
-    done = subprocess.run([sys.executable, "-c", RUN], env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
-    return json.loads(done.stdout)
+    return printed("-c", RUN, **{"NUMBA_BOUNDSCHECK": "0", **variables})
 
 
 @pytest.fixture(scope="module")
@@ -91,10 +85,9 @@ def test_calls_are_replayed_elsewhere(tmp_path: Path) -> None:
     here = [*map(replay.digest, calls)]
     assert any("taylor" in digest for digest in here)
     for way in ("python", "library"):
-        command = [sys.executable, "-c", PLAIN, replay.__file__, "bits", "calls.gz"]
-        environment = {**os.environ, "NONHOLO_KERNELS": way, "PYTHONPATH": str(Path(nh.__file__).parents[1])}
-        elsewhere = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)  # noqa: S603
-        assert json.loads(elsewhere.stdout) == [way, *here]
+        variables = {"NONHOLO_KERNELS": way, "PYTHONPATH": str(Path(nh.__file__).parents[1])}
+        elsewhere = printed("-c", PLAIN, replay.__file__, "bits", "calls.gz", cwd=tmp_path, **variables)
+        assert elsewhere == [way, *here]
 
 
 @pytest.mark.parametrize("way", ["nmba", "", "Library"])

@@ -1,24 +1,20 @@
 """The same bits from the library and from numba, in the process that compiles and in later ones, in any threads."""
 
 import ast
-import json
 import math
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from scripts import printed
 
 import nonholo
 import nonholo as nh
 from nonholo.kernels import _driver, _scalar
 from nonholo.kernels.secular import run as secular_run
 
-LIVE, REPLAY = (Path(__file__).parent / name for name in ("live.py", "replay.py"))
+LIVE, REPLAY, FREE_TOP = (str(Path(__file__).with_name(f"{name}.py")) for name in ("live", "replay", "free_top"))
 ROUNDED_BY_IEEE = {
     "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
     "np": {
@@ -28,25 +24,12 @@ ROUNDED_BY_IEEE = {
 }
 
 
-def _printed(*arguments: str, program: Path = LIVE, **variables: str) -> Any:
-    command = [sys.executable, str(program), *arguments]
-    environment = {**os.environ, **variables}
-    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
-    return json.loads(done.stdout or "null")
-
-
 @pytest.mark.profile("routes", instead="test_three_ways_have_the_same_bits")
 def test_bits_of_a_fresh_cache(tmp_path: Path) -> None:
     """Live sleighs have the bits of the library where numba compiles and where it loads, in 1 and in 7 threads."""
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path)}
     library, compiled, loaded = (
-        _printed(
-            "bits",
-            "sleighs",
-            NONHOLO_KERNELS=way,
-            NUMBA_CACHE_DIR=str(tmp_path),
-            NUMBA_NUM_THREADS=n,
-            OPENBLAS_NUM_THREADS=n,
-        )
+        printed(LIVE, "bits", "members 0", NONHOLO_KERNELS=way, NUMBA_NUM_THREADS=n, OPENBLAS_NUM_THREADS=n, **cache)
         for way, n in (("library", "1"), ("numba", "1"), ("numba", "7"))
     )
     assert loaded == compiled == library
@@ -55,7 +38,7 @@ def test_bits_of_a_fresh_cache(tmp_path: Path) -> None:
 @pytest.mark.profile("long", instead="test_three_ways_have_the_same_bits")
 def test_bits_of_the_library() -> None:
     """All live motions have the bits of numba in the library."""
-    library, compiled = (_printed("bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))
+    library, compiled = (printed(LIVE, "bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))
     assert library == compiled
 
 
@@ -63,9 +46,9 @@ def test_bits_of_the_library() -> None:
 def test_random_bodies_have_the_same_bits(tmp_path: Path) -> None:
     """What 600 bodies of 15 kinds ask of the library, in 1 and in 2 threads, numba answers with the same bits."""
     calls = str(tmp_path / "calls.pickle")
-    _printed("record", calls, "600", program=REPLAY, NONHOLO_KERNELS="library")
+    printed(REPLAY, "record", calls, "600", NONHOLO_KERNELS="library")
     one, two, by_numba = (
-        _printed("bits", calls, threads, program=REPLAY, NONHOLO_KERNELS=way)
+        printed(REPLAY, "bits", calls, threads, NONHOLO_KERNELS=way)
         for threads, way in (("1", "library"), ("2", "library"), ("2", "numba"))
     )
     assert one[0] == two[0] == "library"
@@ -97,7 +80,7 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
 def test_every_compiled_function_is_run() -> None:
     """The live motions call each function that numba compiles: a new one needs a motion that does."""
     functions = _compiled_functions("continuous", "kernels", "base")
-    assert set(functions) - set(_printed("calls", NUMBA_DISABLE_JIT="1")) == set()
+    assert set(functions) - set(printed(LIVE, "calls", NUMBA_DISABLE_JIT="1")) == set()
 
 
 def _inexact(node: ast.AST) -> bool:
@@ -131,11 +114,8 @@ def test_a_family_is_added_by_its_kernel_and_one_entry(disabled: str, tmp_path: 
 
     A kernel of its own is run by all of them. Each of its numbers is that of the library to rounding.
     """
-    variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_DISABLE_JIT": disabled}
-    command = [sys.executable, str(Path(__file__).with_name("free_top.py"))]
-    done = subprocess.run(command, env=variables, stdout=subprocess.PIPE, check=True)  # noqa: S603
-    printed = json.loads(done.stdout)
-    given, added = printed["given"], printed["added"]
+    both = printed(FREE_TOP, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_DISABLE_JIT=disabled)
+    given, added = both["given"], both["added"]
     assert (given["body"], added["body"]) == ("SuslovBody", "FreeTopBody")
     assert added["is_scalar"]
     assert added["outcomes"] == given["outcomes"] == [0, 0, 1]
@@ -167,9 +147,8 @@ def test_the_transverse_momentum_decays_to_zero_without_denormals(discrete: nh.D
 @pytest.mark.parametrize("discrete", [SLEIGH, EIGENVECTOR], ids=["sleigh", "top"])
 def test_a_repelling_equilibrium_is_left_from_however_near(discrete: nh.Discretization) -> None:
     """A transverse momentum of 1e-200 beside a repelling equilibrium grows until the motion is over."""
-    attracting = discrete.system.canonical.restrict(
-        discrete.system.canonical.inertia_operator @ discrete.system.canonical.equilibria().attracting
-    )
+    canonical = discrete.system.canonical
+    attracting = canonical.restrict(canonical.inertia_operator @ canonical.equilibria().attracting)
     start = -attracting / np.linalg.norm(attracting)
     start[np.argmin(np.abs(start))] = 1e-200
     orbit = nh.simulate(discrete, momentum=np.linalg.solve(discrete.system.frame_map, start), steps=60_000)

@@ -1,5 +1,7 @@
 """The principal root of the step in O(n): through angle pi, refused at folds, its pieces against dense matrices."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from bodies import PAST_PI
@@ -52,6 +54,11 @@ def by_path(step: SecularRoute, r: np.ndarray) -> tuple[int, np.ndarray]:
     return code, np.append(1.0, step.from_kernel(y)) / np.sqrt(1 + tau)
 
 
+def outcome_of(step: Any, momentum: np.ndarray) -> int:
+    """Return the outcome of the general step on SO(4)."""
+    return kernels.runs_of(step.body).start(step.body, step.scale * momentum, np.eye(4).ravel())[0]
+
+
 @pytest.mark.profile("routes", instead="test_a_half_turn")
 def test_the_end_of_a_chart_is_no_fold() -> None:
     """`step` by the definition and the general kernel follow in Cayley coordinates: beyond pi they are unsure."""
@@ -59,10 +66,7 @@ def test_the_end_of_a_chart_is_no_fold() -> None:
     assert int(nh.step(discrete, MOMENTUM).outcome) == nh.Outcome.branch_unverified
     step = make_route(discrete, "matrix")
     assert step is not None
-    assert (
-        kernels.runs_of(step.body).start(step.body, step.scale * MOMENTUM, np.eye(4).ravel())[0]
-        == nh.Outcome.branch_unverified
-    )
+    assert outcome_of(step, MOMENTUM) == nh.Outcome.branch_unverified
     assert int(nh.step(discrete, 20 * MOMENTUM[::-1]).outcome) == nh.Outcome.no_real_branch
 
 
@@ -151,9 +155,8 @@ def test_linear_equations(kind: str, equal: bool) -> None:
         det = solve_linear(body, x, right, move)
         J = dense(body.b, -body.c, body.slides, np.concatenate([x[:1], x[2:], x[1:2]]))[1]
         exact = np.linalg.solve(J, np.concatenate([right[2:], [2 * right[0]], [right[1]]]))
-        assert np.abs(np.append(exact[-1], exact[:-1]) - np.append(move[1], np.append(move[0], move[2:]))).max() < (
-            1e-9 * np.abs(exact).max()
-        )
+        found = np.concatenate([move[1::-1], move[2:]])
+        assert np.abs(found - np.roll(exact, 1)).max() < 1e-9 * np.abs(exact).max()
         signs.add(np.sign(det * np.linalg.det(J)))
     assert len(signs) == 1
 
@@ -173,10 +176,8 @@ UNEVEN = _UNEVEN + np.triu(_UNEVEN, 1).T
 def test_tiny_folds_are_not_jumped_over(share: float) -> None:
     """Uneven bodies fold where the steps of the path would be longer than the way to the fold and back."""
     top = nh.SuslovTop(UNEVEN)
-    momentum = share * np.array(
-        [-0.0011173302985360758, -6.31419512598405e-06, 5.38752802160346e-08, -8.1157260939562e-08]
-    )
-    velocity = np.linalg.solve(top.constrained_inertia, momentum)
+    momentum = np.array([-0.0011173302985360758, -6.31419512598405e-06, 5.38752802160346e-08, -8.1157260939562e-08])
+    velocity = np.linalg.solve(top.constrained_inertia, share * momentum)
     orbit = nh.simulate(nh.discretize(top, 1.0), restricted_velocity=velocity, steps=1, throw=False)
     assert (len(orbit) > 0) == (share < 0.0588)
 
@@ -236,17 +237,13 @@ def test_a_box_has_one_root() -> None:
 @pytest.mark.parametrize("share", [0.99, 1.01, 22.07])
 def test_the_general_step_sees_tiny_folds(share: float) -> None:
     """A top that folds at a small angle: the general step continued to another branch."""
-    tensor = np.array(
-        [
-            [1.0, 0.0007355764, 0.001473202, -0.001420035],
-            [0.0007355764, 4.991517e-06, 1.089421e-07, -1.168234e-06],
-            [0.001473202, 1.089421e-07, 1.145525e-05, -1.056824e-05],
-            [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
-        ]
-    )
+    tensor = [
+        [1.0, 0.0007355764, 0.001473202, -0.001420035],
+        [0.0007355764, 4.991517e-06, 1.089421e-07, -1.168234e-06],
+        [0.001473202, 1.089421e-07, 1.145525e-05, -1.056824e-05],
+        [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
+    ]
     step = make_route(nh.discretize(nh.SuslovTop(tensor), 1.0), "matrix").compiled_route
     assert step is not None
     momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
-    assert (kernels.runs_of(step.body).start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (
-        share < 1
-    )
+    assert (outcome_of(step, momentum) == 0) == (share < 1)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies import mass_tensor, random_rows
+from refusals import refusals
 
 import nonholo as nh
 from nonholo import kernels
@@ -146,20 +147,14 @@ def test_a_hundred_thousand_dimensions() -> None:
     assert np.ptp(orbit.energy) <= 1e-14 * orbit.energy[0]
 
 
-@pytest.mark.parametrize("name", ["momentum", "multipliers", "displacement", "configuration", "body_velocity"])
-def test_what_grows_with_the_square_is_refused(name: str) -> None:
-    """Full momenta and matrices of a wide body are refused with the remedy."""
-    system = nh.SuslovTop.arrowhead(np.ones(1000), np.zeros(999))
-    orbit = nh.simulate(nh.discretize(system, 0.1), restricted_velocity=np.full(999, 0.03), steps=1, reconstruct=False)
-    with pytest.raises(ValueError, match="reconstruct"):
-        getattr(orbit, name)
-
-
-def test_too_many_poses_are_refused() -> None:
-    """Poses that fill the memory are refused before any work."""
-    system = nh.SuslovTop.arrowhead(np.ones(10_000), np.zeros(9_999))
-    with pytest.raises(ValueError, match="save_every"):
-        nh.simulate(nh.discretize(system, 0.1), restricted_velocity=np.ones(9_999), steps=100)
+_WIDE, _WIDER = (nh.discretize(nh.SuslovTop.arrowhead(np.ones(n), np.zeros(n - 1)), 0.1) for n in (1000, 10_000))
+_BARE = nh.simulate(_WIDE, restricted_velocity=np.full(999, 0.03), steps=1, reconstruct=False)
+# Full momenta and matrices of a wide body, and poses that fill the memory, are refused with the remedy.
+test_what_grows_with_the_square_is_refused = refusals(
+    *((lambda name=name: getattr(_BARE, name), "reconstruct") for name in ("momentum", "multipliers", "displacement")),
+    *((lambda name=name: getattr(_BARE, name), "reconstruct") for name in ("configuration", "body_velocity")),
+    (lambda: nh.simulate(_WIDER, restricted_velocity=np.ones(9_999), steps=100), "save_every"),
+)
 
 
 LANES = 8

@@ -50,72 +50,78 @@ class Continuous:
         along = self.toward[i] if one else v / np.linalg.norm(v)
         return -slip.grip * along - slip.viscous * v
 
+    def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the velocity and the pose of a state."""
+        n, size = self.group.dim, self.group.size
+        return state[:n], state[n:].reshape(size, size)
+
     def run(self, omega: Any, time: float) -> tuple[np.ndarray, np.ndarray, list[str]]:
         """Return the velocity and the pose after a time, and how the contacts were."""
-        n, size, t, kinds = self.group.dim, self.group.size, 0.0, []
-        state = np.append(np.asarray(omega, float), np.eye(size))
-        held = [float(np.linalg.norm(slip.rows @ state[:n])) < _RESTING for slip in self.slips]
+        t, kinds = 0.0, []
+        state = np.append(np.asarray(omega, float), np.eye(self.group.size))
+        held = [float(np.linalg.norm(slip.rows @ omega)) < _RESTING for slip in self.slips]
         while t < time:
             self._settle(state, held)
             kinds.append(" ".join("hold" if rests else "slide" for rests in held))
             t, state = self._stretch(t, time, state, held)
-        return state[:n], state[n:].reshape(size, size), kinds
+        return *self.parts(state), kinds
 
     def _settle(self, state: np.ndarray, held: list[bool]) -> None:
         """Let contacts yield whose reactions are beyond their grips, the worst one first; note where slips go."""
-        n, size = self.group.dim, self.group.size
         for i, slip in enumerate(self.slips):
-            v = slip.rows @ state[:n]
+            v = slip.rows @ self.parts(state)[0]
             if np.linalg.norm(v) >= _RESTING:
                 self.toward[i] = v / np.linalg.norm(v)
         while True:
-            _, forces = self.rate(state[:n], state[n:].reshape(size, size), held)
-            over = [
-                rests * (np.linalg.norm(force) - slip.grip)
-                for rests, force, slip in zip(held, forces, self.slips, strict=True)
-            ]
+            _, forces = self.rate(*self.parts(state), held)
+            sizes = zip(held, forces, self.slips, strict=True)
+            over = [rests * (np.linalg.norm(force) - slip.grip) for rests, force, slip in sizes]
             worst = int(np.argmax(over))
             if over[worst] <= 0:
                 return
-            held[worst], self.toward[worst] = False, -forces[worst] / np.linalg.norm(forces[worst])
+            self._release(worst, forces[worst], held)
+
+    def _release(self, i: int, force: np.ndarray, held: list[bool]) -> None:
+        """Let a contact yield against the force that held it."""
+        held[i], self.toward[i] = False, -force / np.linalg.norm(force)
 
     def _stretch(self, t: float, time: float, state: np.ndarray, held: list[bool]) -> tuple[float, np.ndarray]:
         """Move on until a contact changes, which is changed then."""
-        n, size = self.group.dim, self.group.size
 
-        def field(_: float, y: np.ndarray) -> np.ndarray:
-            g = y[n:].reshape(size, size)
-            return np.append(self.rate(y[:n], g, held)[0], g @ self.group.hat(y[:n]))
+        def field(_: float, state: np.ndarray) -> np.ndarray:
+            omega, g = self.parts(state)
+            return np.append(self.rate(omega, g, held)[0], g @ self.group.hat(omega))
 
         def change_of(i: int) -> Any:
-            def yields(_: float, y: np.ndarray) -> float:
-                return self.slips[i].grip - float(
-                    np.linalg.norm(self.rate(y[:n], y[n:].reshape(size, size), held)[1][i])
-                )
-
-            def rests(_: float, y: np.ndarray) -> float:
-                v = self.slips[i].rows @ y[:n]
+            def left(_: float, state: np.ndarray) -> float:
+                """Return how far it is to the change."""
+                omega, g = self.parts(state)
+                if held[i]:
+                    return self.slips[i].grip - float(np.linalg.norm(self.rate(omega, g, held)[1][i]))
+                v = self.slips[i].rows @ omega
                 return float(self.toward[i] @ v if len(v) == 1 else np.linalg.norm(v)) - _RESTING
 
-            stop: Any = yields if held[i] else rests
+            stop: Any = left
             stop.terminal, stop.direction = True, -1
             return stop
 
         stops = [change_of(i) for i in range(len(held))]
         path = solve_ivp(field, (t, time), state, "DOP853", rtol=1e-11, atol=1e-12, events=stops)
         after = path.y[:, -1].copy()
-        if path.status != 1:
-            return time, after
-        i = next(i for i, times in enumerate(path.t_events) if len(times))
+        if path.status == 1:
+            self._change(next(i for i, times in enumerate(path.t_events) if len(times)), after, held)
+        return float(path.t[-1]), after
+
+    def _change(self, i: int, state: np.ndarray, held: list[bool]) -> None:
+        """Let a contact yield that held, and one rest that slid."""
+        omega, g = self.parts(state)
         if held[i]:
-            force = self.rate(after[:n], after[n:].reshape(size, size), held)[1][i]
-            held[i], self.toward[i] = False, -force / np.linalg.norm(force)
-            return float(path.t[-1]), after
+            self._release(i, self.rate(omega, g, held)[1][i], held)
+            return
         held[i] = True
         tied = self.tied(held)
         into = np.linalg.solve(self.inertia, tied.T)
-        after[:n] -= into @ np.linalg.solve(tied @ into, tied @ after[:n])
-        return float(path.t[-1]), after
+        omega -= into @ np.linalg.solve(tied @ into, tied @ omega)
 
 
 def space_body() -> nh.LLSystem:

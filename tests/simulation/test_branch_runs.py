@@ -6,21 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL
+from problems import EVERY
 from refusals import refusals
 
 import nonholo as nh
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
 ALONG = {"restricted_velocity": None, "body_velocity": [[1.0, 0.0, 0.0]]}
-FAMILIES = {
-    "top": TOP,
-    "tilted top": nh.discretize(
-        nh.SuslovTop.from_inertia([[3, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)), 0.2
-    ),
-    "top 4": nh.discretize(GENERAL["suslov 4"][0], 0.1),
-    "sleigh": nh.discretize(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), 0.1),
-    "motion": nh.discretize(GENERAL["sleigh 3"][0], 0.1),
-}
+FAMILIES = {"top": TOP, "tilted top": nh.discretize(EVERY["tilted top"], 0.2)}
+FAMILIES |= {name: nh.discretize(EVERY[name], 0.1) for name in ("suslov 4", "offset sleigh", "sleigh 3")}
 
 
 @pytest.mark.parametrize("branch", ["nearest", "smallest"])
@@ -28,10 +22,8 @@ FAMILIES = {
 def test_small_steps_stay_principal(name: str, branch: str) -> None:
     """Where the step is small the nearest and the smallest value are the principal one, and all decodes alike."""
     discrete = FAMILIES[name]
-    v = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
-    principal, other = (
-        nh.simulate(discrete, restricted_velocity=v, steps=20, branch=rule) for rule in ("principal", branch)
-    )
+    start = {"restricted_velocity": 0.3 * np.arange(1, 1 + discrete.system.rank), "steps": 20}
+    principal, other = (nh.simulate(discrete, **start, branch=rule) for rule in ("principal", branch))
     for quantity in ("time", "momentum", "displacement", "configuration", "multipliers", "energy", "body_velocity"):
         missed = np.abs(getattr(other, quantity) - getattr(principal, quantity)).max()
         assert missed < 1e-13 * max(1.0, np.abs(getattr(principal, quantity)).max()), quantity
@@ -66,10 +58,8 @@ def test_the_principal_rule_refuses_that_start() -> None:
 def test_a_full_momentum_names_the_same_start() -> None:
     """A full momentum on the locus off the principal branch starts at its displacement."""
     W = _off_principal()
-    orbits = [
-        nh.simulate(TOP, **start, steps=5, branch="nearest")
-        for start in ({"displacement": W}, {"momentum": nh.discrete_legendre(TOP, W)})
-    ]
+    starts = {"displacement": W}, {"momentum": nh.discrete_legendre(TOP, W)}
+    orbits = [nh.simulate(TOP, **start, steps=5, branch="nearest") for start in starts]
     np.testing.assert_allclose(orbits[0].displacement, orbits[1].displacement, rtol=0, atol=1e-12)
 
 
@@ -118,13 +108,10 @@ def _chosen(found: Any, _: np.ndarray) -> int:
 @pytest.mark.parametrize("branch", ["nearest", "largest", "outer", _chosen])
 def test_members_of_an_ensemble_take_the_rule(branch: Any) -> None:
     """Off the principal branch, from displacements, members have the bits of their runs alone, decoded too."""
-    starts = {
-        "displacement": np.stack([_off_principal(), nh.simulate(TOP, momentum=[0.2, 0.3], steps=1).displacement[1]])
-    }
-    if branch == "outer":
-        starts = {"displacement": starts["displacement"][:1]}
-    batch = nh.ensemble(TOP, **starts, steps=6, save_every=1, branch=branch)
-    for member, W in enumerate(starts["displacement"]):
+    later = nh.simulate(TOP, momentum=[0.2, 0.3], steps=1).displacement[1]
+    starts = np.stack([_off_principal(), later][: 1 if branch == "outer" else 2])
+    batch = nh.ensemble(TOP, displacement=starts, steps=6, save_every=1, branch=branch)
+    for member, W in enumerate(starts):
         alone, orbit = nh.simulate(TOP, displacement=W, steps=6, branch=branch), batch.orbit(member)
         assert orbit.branch == alone.branch == batch.branch
         for name in ("time", "displacement", "momentum", "multipliers", "configuration", "energy", "body_velocity"):
@@ -152,6 +139,3 @@ test_rules_that_members_cannot_take_are_refused = refusals(
     ({"discrete": SLEIGH, **ALONG, "branch": "nearest", "steps": None, "times": (0.0, 1.0)}, "branch"),
     ask=lambda given: nh.ensemble(**{"discrete": TOP, "restricted_velocity": [[0.1, 0.1]], "steps": 3} | given),
 )
-
-
-# In the words of a single run, with the number of the member where it is that member's.

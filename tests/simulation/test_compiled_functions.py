@@ -1,21 +1,22 @@
 """Forces and potentials that numba compiled: the same motions as of Python functions and of the definition."""
 
-import functools
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numba
 import numpy as np
 import pytest
-from bodies import GENERAL, tensor
+from bodies import GENERAL, weight
+from comparisons import assert_same
+from problems import EVERY
+from simulation.forces import TOP
 
 import nonholo as nh
 from nonholo.base.numerics import applied
-from nonholo.systems import AbstractSystem, System
+from nonholo.systems import AbstractSystem
 
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SYSTEMS: dict[str, AbstractSystem] = {
     "top": TOP,
     "tilted top": nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0)),
@@ -47,23 +48,19 @@ def _well(g: np.ndarray) -> float:
 DRIVE, PUSH, WELL = numba.njit(_drive), numba.njit(_push), numba.njit(_well)
 
 
-def _weight(system: AbstractSystem) -> nh.Gravity:
-    n = 2 if system.has_blade else 3 + (system is SYSTEMS["suslov 4"])
-    return nh.Gravity(np.linspace(0.2, -1.0, n), np.linspace(0.1, 0.3, n))
+def _table(system: AbstractSystem) -> np.ndarray:
+    return np.random.default_rng(3).normal(size=(12, system.group.dim))
 
 
 KINDS: dict[str, Callable[[AbstractSystem], tuple[Any, Any]]] = {
     "push": lambda _: (None, _push),
-    "weight and drive": lambda system: (_weight(system), _drive),
+    "weight and drive": lambda system: (weight(system), _drive),
     "well and drive": lambda _: (_well, _drive),
     "well": lambda _: (_well, None),
     "well and friction": lambda system: (_well, nh.Friction(np.linspace(0.1, 0.4, system.group.dim))),
     "well, drive and friction": lambda system: (_well, (_drive, nh.Friction(np.linspace(0.1, 0.4, system.group.dim)))),
-    "all three": lambda system: (
-        _weight(system),
-        (np.random.default_rng(3).normal(size=(12, system.group.dim)), nh.Friction(np.eye(system.group.dim)), _drive),
-    ),
-    "well and table": lambda system: (_well, np.random.default_rng(3).normal(size=(12, system.group.dim))),
+    "all three": lambda system: (weight(system), (_table(system), nh.Friction(np.eye(system.group.dim)), _drive)),
+    "well and table": lambda system: (_well, _table(system)),
 }
 
 
@@ -71,10 +68,6 @@ def _compiled(function: Any) -> Any:
     if isinstance(function, tuple):
         return tuple(map(_compiled, function))
     return {_drive: DRIVE, _push: PUSH, _well: WELL}[function] if callable(function) else function
-
-
-def _rows(orbit: Any) -> list[np.ndarray]:
-    return [orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose]
 
 
 @pytest.mark.profile("routes", keep=["top-all three", "top-well and drive"])
@@ -90,10 +83,9 @@ def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> Non
         discrete = nh.discretize(forced, 0.05)
         found.append(nh.simulate(discrete, **start, steps=12))
         thin = nh.simulate(discrete, **start, steps=11, save_every=3)
-        for every, some in zip(_rows(found[-1]), _rows(thin), strict=True):
-            assert np.array_equal(every[:12:3], some)
+        assert_same(found[-1][:12:3], thin)
     assert discrete.route.compiled_route is not None
-    assert all(np.array_equal(*both) for both in zip(*map(_rows, found), strict=True))
+    assert_same(*found)
 
 
 def test_events_are_found_under_a_compiled_potential() -> None:
@@ -131,16 +123,25 @@ def _raising(time: float, g: np.ndarray, w: np.ndarray) -> Any:
 FAILING = {"nonfinite": _ending, "no_half_impulse": _jumping, "raises": _raising}
 
 
-@pytest.mark.profile("routes", keep=["raises"])
+@pytest.mark.profile("routes", keep=["raises-numba", "*-python"])
+@pytest.mark.parametrize("way", ["numba", "python"])
 @pytest.mark.parametrize("name", FAILING)
-def test_compiled_functions_that_fail(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What ends a run has a name, and what a function raises is printed."""
+def test_functions_that_fail(name: str, way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What ends a run has a name of its own, with the states before; what a compiled function raises is printed."""
     printed: list[str] = []
     monkeypatch.setattr(sys, "unraisablehook", lambda raised: printed.append(str(raised.exc_value)))
-    discrete = nh.discretize(nh.Forced(TOP, force=FAILING[name]), 0.1)
-    run = nh.simulate(discrete, restricted_velocity=START[:2], steps=9, throw=False)
-    assert (str(run.outcome), len(run)) == ("nonfinite" if name == "raises" else name, 3)
+    force, start = FAILING[name], {"restricted_velocity": START[:2], "steps": 9}
+    discrete = nh.discretize(nh.Forced(TOP, force=force if way == "numba" else force.py_func), 0.1)
+    if (name, way) == ("raises", "python"):
+        with pytest.raises(ValueError, match="too late"):
+            nh.simulate(discrete, **start)
+        return
+    outcome = "nonfinite" if name == "raises" else name
+    run = nh.simulate(discrete, **start, throw=False)
+    assert (str(run.outcome), len(run)) == (outcome, 3)
     assert printed == ["too late"] * (name == "raises")
+    with pytest.raises(nh.OutcomeError, match=outcome):
+        nh.simulate(discrete, **start)
 
 
 def test_a_compiled_function_of_another_size_is_refused() -> None:
@@ -158,22 +159,17 @@ def _gust(time: float, g: np.ndarray, w: np.ndarray) -> Any:
 
 
 @pytest.mark.profile("routes", cases=["in space-*"])
-@pytest.mark.parametrize(
-    ("fixed", "compiled"),
-    [("in the body", True), ("in the body", False), ("in space", False)],  # constraints fixed in space: in Python
-    ids=["in the body-numba", "in the body-python", "in space-python"],
-)
-def test_half_impulses_that_exist_are_found(fixed: str, compiled: bool) -> None:
+@pytest.mark.parametrize("way", ["in the body-numba", "in the body-python", "in space-python"])
+def test_half_impulses_that_exist_are_found(way: str) -> None:
     """Half an impulse of drag turns u into x with u - x = a (u + x)^2, a = h/16 here, whatever the step.
 
     A step without a constraint that acts is two of them from node to node: the positive root of
     a x^2 + (1 + 2 a u) x + a u^2 - u = 0, twice. The explicit impulse reverses the velocity.
     """
-    straight = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
-    system = (
-        straight if fixed == "in the body" else nh.LRSystem(nh.SE(2), straight.homogeneous_mass_tensor, np.eye(3)[:2])
-    )
-    force, h, known = numba.njit(_drag) if compiled else _drag, 0.8, [8.0]
+    system: AbstractSystem = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    if "space" in way:
+        system = nh.LRSystem(nh.SE(2), system.homogeneous_mass_tensor, np.eye(3)[:2])
+    force, h, known = numba.njit(_drag) if "numba" in way else _drag, 0.8, [8.0]
     a = 0.5 * h / 2 / 4
     for _ in range(2):
         u = known[-1]
@@ -201,31 +197,7 @@ def test_half_impulses_near_their_limit(strength: float) -> None:
         assert abs(orbit.body_velocity[1, 1] - (2 * middle - strength)) < 1e-11  # slopes near a fold: 1e-12 / 0.2
 
 
-DECODED = ("restricted_momentum", "momentum", "body_velocity", "configuration", "pose", "energy")
-
-
-def top(rng: np.random.Generator) -> System:
-    """Return a top by its inertia, with an oblique axis."""
-    axis, J = rng.normal(size=3), tensor(3, rng)
-    return nh.SuslovTop.from_inertia(np.trace(J) * np.eye(3) - J, axis=axis / np.linalg.norm(axis))
-
-
-def sleigh(rng: np.random.Generator, b: float) -> System:
-    """Return a plane sleigh; b times a random number is its offset across the blade."""
-    return nh.ChaplyginSleigh(*np.exp(rng.normal(size=2) / 2), *(rng.normal(size=2) * (1.0, b)))
-
-
-BODIES: dict[str, Callable[[np.random.Generator], System]] = {
-    "sleigh": functools.partial(sleigh, b=0.0),
-    "sleigh-b": functools.partial(sleigh, b=1.0),
-    "top": lambda rng: nh.SuslovTop(tensor(3, rng)),
-    "oblique": top,
-}
-WIDER: dict[str, Callable[[np.random.Generator], System]] = {
-    "SO(5)": lambda rng: nh.SuslovTop(tensor(5, rng)),
-    "SE(3)": lambda rng: nh.MultidimensionalSleigh(1.5, rng.normal(size=3), tensor(3, rng)),
-    "slanted": lambda rng: nh.LLSystem(nh.SO(3), tensor(3, rng), annihilator=rng.normal(size=(1, 3))),
-}
+DECODED = "restricted_momentum", "momentum", "body_velocity", "configuration", "pose", "energy", "spatial_momentum"
 
 
 @pytest.mark.parametrize("k", [1, 2, 3, 7, 16, 33, 150])
@@ -243,49 +215,13 @@ def test_products_of_a_row_are_those_of_many(k: int) -> None:
     assert np.allclose(alone, rows @ matrix.T, rtol=1e-13, atol=1e-13)
 
 
-@pytest.mark.parametrize("kind", [*BODIES, *WIDER])
-def test_states_are_read_alone_as_in_company(kind: str) -> None:
+@pytest.mark.parametrize("name", ["tilted top", "sleigh", "offset sleigh", "suslov 6", "sleigh 3", "any d on SO(4)"])
+def test_states_are_read_alone_as_in_company(name: str) -> None:
     """Each state of an orbit or a flow decodes to the same bits alone and among all others."""
-    rng = np.random.default_rng(7)
-    body = {**BODIES, **WIDER}[kind](rng)
-    start: Any = {"restricted_velocity": rng.normal(size=body.rank) / 3}
+    body = EVERY[name]
+    start: Any = {"restricted_velocity": np.random.default_rng(7).normal(size=body.rank) / 3}
     flow = nh.flow(body, times=np.linspace(0.0, 2.0, 9), **start)
     for orbit in (nh.simulate(nh.discretize(body, 0.1), steps=8, **start), flow):
-        for name in (
-            *DECODED,
-            "spatial_momentum",
-            *(("chart", "displacement") if orbit.is_discrete else ("multipliers",)),
-        ):
-            alone = np.concatenate([getattr(orbit[k : k + 1], name) for k in range(len(orbit))])
-            assert np.array_equal(alone, getattr(orbit, name)), name
-
-
-def bodies(kind: str, count: int) -> Iterator[tuple[System, np.ndarray]]:
-    """Yield bodies, and three momenta along the constraint of each."""
-    rng = np.random.default_rng(5)
-    for _ in range(count):
-        body = {**BODIES, **WIDER}[kind](rng)
-        yield body, rng.normal(size=(3, body.rank)) / 5
-
-
-CASES = [
-    *(pytest.param(kind, 6, id=f"{kind}-few") for kind in BODIES),
-    *(pytest.param(kind, 96, id=f"{kind}-many") for kind in BODIES),
-    *(pytest.param(kind, 6, id=kind) for kind in WIDER),
-]
-
-
-@pytest.mark.profile("problems", keep=["*-few-*"])
-@pytest.mark.parametrize("flows", [False, True], ids=["runs", "flows"])
-@pytest.mark.parametrize(("kind", "count"), CASES)
-def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int, flows: bool) -> None:
-    """Last states after 20 steps, or those of flows, and what is decoded of them, are those from the same momenta."""
-    names, times = ("reduced_momentum", "canonical_pose", *DECODED), np.linspace(0.0, 2.0, 3)
-    for body, momenta in bodies(kind, count):
-        motion, run = (body, {"times": times}) if flows else (nh.discretize(body, 0.1), {"steps": 20})
-        batch: Any = nh.ensemble(motion, momentum=momenta, **run)
-        for j, momentum in enumerate(momenta):
-            alone = (nh.flow if flows else nh.simulate)(motion, momentum=momentum, **run)
-            for name in names if flows else ("cayley", *names):
-                last = getattr(alone, name)[0 if flows else -1 :]
-                assert np.array_equal(getattr(batch, name)[j], last), (body, name)
+        for what in (*DECODED, *(("chart", "displacement") if orbit.is_discrete else ("multipliers",))):
+            alone = np.concatenate([getattr(orbit[k : k + 1], what) for k in range(len(orbit))])
+            assert np.array_equal(alone, getattr(orbit, what)), what

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from comparisons import assert_joined, assert_near, assert_same
 from refusals import refusals
+from simulation.forces import HEAVY
 
 import nonholo as nh
 from nonholo.simulation.members import _ensemble
@@ -27,12 +28,29 @@ MOTIONS = {
     "order 4": nh.discretize(nh.SuslovTop(TOP.system.mass_tensor), 0.1, order=4),
     "order 6, sleigh": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.1, order=6),
 }  # fmt: skip
-STATE = ("time", "reduced_momentum", "cayley", "canonical_pose")
+OFFSET = nh.ChaplyginSleigh(1.0, 0.75, 0.5)  # rho^2 = a^2 + J/m = 1
+VELOCITY = (0.3, -1.0, 0.0)
+# v_1 = E tanh(s_0 + a E t / rho), with E = hypot(rho omega, v_1) and sinh s_0 = v_1/(rho omega).
+CUSP = -np.arcsinh(VELOCITY[1] / VELOCITY[0]) / (0.5 * np.hypot(*VELOCITY[:2]))
+TIMES = np.linspace(0.0, 10.0, 21)
+FLOW: dict[str, Any] = {"body_velocity": VELOCITY, "times": TIMES}
+ROWS = {"restricted_velocity": np.random.default_rng(3).normal(size=(9, 2)) * (1.5, 3.0)}
+TILT = nh.Event(lambda orbit: orbit.configuration[:, 0, 0], name="tilt")
+SIDE = nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="side", stop=2)
 
 
 def start(discrete: nh.Discretization) -> np.ndarray:
     """A velocity along the constraint that suits every system here."""
     return np.linspace(1.0, -0.6, discrete.system.rank)
+
+
+CIRCLE = {"body_velocity": (4.0, 1.0, 0.0)}
+CIRCLE_OF_ONE = {"body_velocity": [CIRCLE["body_velocity"]]}
+
+
+def circle(steps: int = 20, **options: Any) -> nh.Orbit:
+    """Run the sleigh that turns on a circle."""
+    return nh.simulate(ROUND, **CIRCLE, steps=steps, **options)
 
 
 def east(orbit: nh.Orbit) -> np.ndarray:
@@ -42,7 +60,7 @@ def east(orbit: nh.Orbit) -> np.ndarray:
 
 def test_crossing_of_the_uniform_circle_is_the_known_one() -> None:
     """The sleigh with a = 0 looks east again where arcsin(tau w) fills up the whole turns, to 1e-15 of a time of 4."""
-    orbit = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=600, events=[nh.Event(east, direction=1)])
+    orbit = circle(600, events=[nh.Event(east, direction=1)])
     with mpmath.workdps(40):
         h = mpmath.mpf(float(ROUND.time_step))
         turn = mpmath.asin(4 * h)
@@ -95,8 +113,7 @@ def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
 
 def test_direction() -> None:
     """Crossings from below and from above together are those in both directions, each marked with its own."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 60}
-    both, up, down = (nh.simulate(ROUND, **run, events=[nh.Event(east, direction=d)]).events[0] for d in (0, 1, -1))
+    both, up, down = (circle(60, events=[nh.Event(east, direction=d)]).events[0] for d in (0, 1, -1))
     assert np.array_equal(both.time, np.sort(np.concatenate([up.time, down.time])))
     assert both.direction.tolist() == [-1, 1, -1, 1, -1, 1, -1]
     assert set(up.direction) == {1}
@@ -106,9 +123,7 @@ def test_direction() -> None:
 @pytest.mark.parametrize("every", [1, 4])
 def test_stop_keeps_what_is_before(every: int) -> None:
     """A run that stops at the second crossing ends with the saved state before it, and is successful."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "save_every": every}
-    orbit = nh.simulate(ROUND, **run, steps=10**9, events=[nh.Event(east, stop=2)])
-    whole = nh.simulate(ROUND, **run, steps=15)
+    orbit, whole = circle(10**9, save_every=every, events=[nh.Event(east, stop=2)]), circle(15, save_every=every)
     assert orbit.outcome == nh.Outcome.successful
     assert orbit.events.stopped_by == "east"
     assert orbit.events["east"].step[-1] == 15
@@ -116,25 +131,25 @@ def test_stop_keeps_what_is_before(every: int) -> None:
 
 
 def test_the_first_of_two_stops_in_one_step_counts() -> None:
-    """Of crossings in one step those up to the one that ends the run are kept, in order of time."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 100}
+    """Of crossings in one step those up to the one that ends the run are kept, in order of time, of members too."""
     turn = float(np.arcsin(0.4))
     events = [
         nh.Event(lambda orbit, at=at: orbit.heading - (20 + at / 10) * turn, stop=stop, name=f"at_{at}")
-        for at, stop in ((9, True), (2, False), (7, True), (5, False))
+        for at, stop in ((9, True), (2, False), (7, True), (5, False), (8, False))
     ]
-    found = nh.simulate(ROUND, **run, events=events).events
-    assert [len(found[name]) for name in ("at_2", "at_5", "at_7", "at_9")] == [1, 1, 1, 0]
+    found, batch = circle(100, events=events).events, nh.ensemble(ROUND, **CIRCLE_OF_ONE, steps=100, events=events)
+    assert [len(crossings) for crossings in found.found] == [0, 1, 1, 1, 0]
+    assert [int(crossings.count[0]) for crossings in batch.events.found] == [0, 1, 1, 1, 0]
     assert found.stopped_by == "at_7"
+    assert (batch.events.stopped_by.tolist(), batch.steps_done.tolist()) == ([2], [20])
     assert found["at_2"].time < found["at_5"].time < found["at_7"].time
 
 
 def test_zero_at_a_state_counts_once() -> None:
     """A function that is exactly zero at a saved state has one crossing, that state, also if it only touches zero."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
-    plain = nh.simulate(ROUND, **run)
+    plain = circle()
     through, touch = (nh.Event(lambda orbit, n=n: (orbit.time - plain.time[9]) ** n, name=f"power_{n}") for n in (1, 2))
-    found = nh.simulate(ROUND, **run, events=[through, touch]).events
+    found = circle(events=[through, touch]).events
     for crossings in found.found:
         assert (crossings.step.tolist(), crossings.fraction.tolist()) == ([9], [0.0])
         assert np.array_equal(crossings.states.pose, plain.pose[9:10])
@@ -149,13 +164,18 @@ def test_states_between_stretches_keep_their_value() -> None:
         values[at] = np.where(at == 0, -1e-16, 1e-16)  # products of matrices can have other last bits in other company
         return values
 
-    assert len(nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=600, events=[wavering]).events[0]) == 1
+    assert len(circle(600, events=[wavering]).events[0]) == 1
 
 
 def test_a_stop_at_a_state_keeps_it() -> None:
-    """A run that stops exactly at a state keeps that state."""
-    orbit = nh.simulate(ROUND, **_CIRCLE, events=[nh.Event(lambda o: 0.5 - o.time, 0, True)])
-    assert orbit.time[-1] == 0.5
+    """A run that stops exactly at a state keeps that state, and so does a member."""
+    assert circle(events=[nh.Event(lambda orbit: 0.5 - orbit.time, 0, True)]).time[-1] == 0.5
+    events = [nh.Event(lambda orbit: orbit.time - 2.0, stop=True)]
+    batch = nh.ensemble(SLEIGH, **ROWS, steps=50, save_every=5, events=events)
+    plain = nh.ensemble(SLEIGH, **ROWS, steps=20, save_every=5)
+    assert batch.steps_done.tolist() == [20] * len(batch)
+    assert np.array_equal(batch.pose[:, :5], plain.pose)
+    assert np.isnan(batch.pose[:, 5:]).all()
 
 
 def test_staying_at_zero_is_no_crossing() -> None:
@@ -168,8 +188,7 @@ def test_staying_at_zero_is_no_crossing() -> None:
 def test_headings_of_events_know_full_turns() -> None:
     """Blocks of a long run, and states in a step, continue the heading: it crosses 3000 turns once."""
     far = nh.Event(lambda orbit: orbit.heading - 6000 * np.pi, name="far")
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 50_000, "save_every": 10_000}
-    found = nh.simulate(ROUND, **run, events=[far]).events["far"]
+    found = circle(50_000, save_every=10_000, events=[far]).events["far"]
     assert len(found) == 1
     assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
 
@@ -177,11 +196,11 @@ def test_headings_of_events_know_full_turns() -> None:
 @pytest.mark.parametrize(("block_steps", "stop"), [(20, 9), (5, 9), (5, False)])
 def test_blocks_of_a_run_hold_its_crossings(block_steps: int, stop: int) -> None:
     """Blocks, of one state each too, have states and crossings of the run, and end with the one that a stop ends."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=stop)], "save_every": 5}
-    whole = nh.simulate(ROUND, **run)
-    blocks = list(nh.iterate(ROUND, **run, block_steps=block_steps))
+    run: dict[str, Any] = {"events": [nh.Event(east, stop=stop)], "save_every": 5}
+    whole = circle(200, **run)
+    blocks = list(nh.iterate(ROUND, **CIRCLE, steps=200, **run, block_steps=block_steps))
     assert np.array_equal(np.concatenate([block.events["east"].time for block in blocks]), whole.events["east"].time)
-    assert_joined(blocks, whole, *STATE)
+    assert_joined(blocks, whole)
     assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + [whole.events.stopped_by]
 
 
@@ -195,16 +214,11 @@ def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> 
 
 def test_cusp_of_the_discrete_sleigh_tends_to_the_continuous_one() -> None:
     """A backward sleigh turns round once; the time of its cusp has an error of second order in h."""
-    sleigh, velocity = nh.ChaplyginSleigh(1.0, 0.75, 0.5), (0.3, -1.0, 0.0)
-    omega, v1 = velocity[:2]
-    rate = 0.5 / np.sqrt(1.0)  # |a| |x| / (rho^2 sqrt(m)) with rho^2 = 1; v_1 = |x| tanh(s_0 + rate |x| t)
-    level = np.hypot(omega, v1)
-    known = -np.arcsinh(v1 / omega) / (rate * level)
     errors = []
     for h in (0.1, 0.05, 0.025):
-        run = nh.simulate(nh.discretize(sleigh, h), body_velocity=velocity, steps=int(20 / h), events=[nh.cusp])
+        run = nh.simulate(nh.discretize(OFFSET, h), body_velocity=VELOCITY, steps=int(20 / h), events=[nh.cusp])
         assert len(run.events["cusp"]) == 1
-        errors.append(abs(run.events["cusp"].time[0] - known))
+        errors.append(abs(run.events["cusp"].time[0] - CUSP))
     assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() < 0.05
 
 
@@ -215,29 +229,34 @@ test_functions_that_give_no_number_are_refused = refusals(
     (lambda orbit: orbit.time > 1, "bool of shape"),
     (lambda orbit: np.where(orbit.time > 1.05, np.nan, 1.0), "nan from `<lambda>` at time 1.1"),
     (lambda orbit: orbit.altitude, "AttributeError"),
-    ask=lambda function: nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20, events=[function]),
+    ask=lambda function: circle(events=[function]),
     begin=r"(?s)(?=.*event 0).*",
 )
 
 
-_CIRCLE: dict[str, Any] = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
 _ALONG: dict[str, Any] = {"restricted_velocity": (0.7, -0.3), "steps": 5}
+_FALLING = nh.discretize(nh.Forced(TOP.system, HEAVY), 0.1)
 _WITHOUT, _THINNED = {"reconstruct": False}, "one with steps left out"
 # What cannot be watched is refused before any work, orbits with states left out too.
 test_what_cannot_be_watched_is_refused = refusals(
-    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=east), "be a list"),
-    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[3]), "be a function"),
-    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east, east]), "different names"),
-    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east], branch="smallest"), "principal branch"),
+    (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=east), "be a list"),
+    (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=[3]), "be a function"),
+    (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=[east, east]), "different names"),
+    (lambda: nh.simulate(SLEIGH, **CIRCLE, steps=20, events=[east], branch="smallest"), "principal branch"),
     (lambda: nh.simulate(MOTIONS["right-invariant"], **_ALONG, **_WITHOUT, events=[east]), "reconstruct=True"),
-    (lambda: nh.simulate(ROUND, **_CIRCLE, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (
+        lambda: nh.simulate(_FALLING, **_ALONG, **_WITHOUT, events=[nh.cusp]),
+        "a step that depends on the pose, without r",
+    ),
+    (lambda: circle(**_WITHOUT, events=[east]), "reconstruct=True"),
     (lambda: nh.simulate(TOP, **_ALONG, events=[nh.cusp]), "watch a sleigh"),
+    (lambda: nh.flow(OFFSET, **FLOW, events=[lambda o: o.displacement[:, 0, 0]]), "displacement.*needs a discrete"),
     (lambda: nh.Event(east, direction=2), "Event"),
     (lambda: nh.Event(east, direction=True), r"Event\(direction=...\)` must be one of"),
     (lambda: nh.Event(east, stop=-1), "Event"),
     (lambda: nh.Event(east, stop=0.5), "Event"),
-    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE)[::2], east), _THINNED),
-    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE).chosen(np.arange(21) != 5), east), _THINNED),
+    (lambda: nh.crossings(circle()[::2], east), _THINNED),
+    (lambda: nh.crossings(circle().chosen(np.arange(21) != 5), east), _THINNED),
 )
 
 
@@ -252,27 +271,10 @@ def test_wide_tops_need_no_poses() -> None:
     assert abs(event.function(found.states)[0]) < 1e-16
 
 
-def test_states_at_crossings_have_the_energy_of_the_run() -> None:
-    """A part of a step is a shorter step, so it conserves energy to rounding, at large steps too."""
-    top = nh.discretize(TOP.system, 0.3)
-    run = {"restricted_velocity": (0.7, -0.3), "steps": 200}
-    orbit = nh.simulate(top, **run, events=[lambda orbit: orbit.configuration[:, 2, 2]])
-    assert len(orbit.events[0]) > 10
-    assert np.abs(orbit.events[0].states.energy / orbit.energy[0] - 1).max() < 2e-15
-
-
-OFFSET = nh.ChaplyginSleigh(1.0, 0.75, 0.5)  # rho^2 = a^2 + J/m = 1
-VELOCITY = (0.3, -1.0, 0.0)
-# v_1 = E tanh(s_0 + a E t / rho), with E = hypot(rho omega, v_1) and sinh s_0 = v_1/(rho omega).
-CUSP = -np.arcsinh(VELOCITY[1] / VELOCITY[0]) / (0.5 * np.hypot(*VELOCITY[:2]))
-TIMES = np.linspace(0.0, 10.0, 21)
-
-
 @pytest.mark.parametrize("method", ["closed_form", None])
 def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) -> None:
     """A backward sleigh turns round once, at the time where tanh is zero; numerically as exact as the tolerances."""
-    flow = {"body_velocity": VELOCITY, "times": TIMES, "method": method, "rtol": 1e-13, "atol": 1e-14}
-    found = nh.flow(OFFSET, **flow, events=[nh.cusp]).events["cusp"]
+    found = nh.flow(OFFSET, **FLOW, method=method, rtol=1e-13, atol=1e-14, events=[nh.cusp]).events["cusp"]
     assert len(found) == 1
     assert found.step.tolist() == [int(np.searchsorted(TIMES, CUSP)) - 1]
     assert abs(found.time[0] - CUSP) < 4e-15 if method else abs(found.time[0] - CUSP) < 1e-12
@@ -281,10 +283,8 @@ def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) ->
 
 def test_events_leave_the_flow_alone() -> None:
     """With and without events the states are the same to the last bit; a stopping event cuts them."""
-    plain = nh.flow(OFFSET, body_velocity=VELOCITY, times=TIMES)
-    stopped = nh.flow(
-        OFFSET, body_velocity=VELOCITY, times=TIMES, events=[nh.Event(lambda o: o.time - 3.2, stop=True, name="t")]
-    )
+    stop = nh.Event(lambda orbit: orbit.time - 3.2, stop=True, name="t")
+    plain, stopped = (nh.flow(OFFSET, **FLOW, events=events) for events in (None, [stop]))
     assert stopped.events.stopped_by == "t"
     assert len(stopped) == 7
     assert np.array_equal(stopped.pose, plain.pose[:7])
@@ -303,18 +303,11 @@ def test_full_turns_between_two_times_are_known(method: str | None) -> None:
 
 def test_backward_flow() -> None:
     """Run backwards from after the cusp the flow finds it again, in the other direction."""
-    after = nh.flow(OFFSET, body_velocity=VELOCITY, times=(0.0, 10.0), method="closed_form")
-    found = nh.flow(
-        OFFSET, body_velocity=after.body_velocity[1], times=TIMES[::-1], method="closed_form", events=[nh.cusp]
-    ).events["cusp"]
+    after = nh.flow(OFFSET, **FLOW, method="closed_form")
+    back: dict[str, Any] = {"body_velocity": after.body_velocity[-1], "times": TIMES[::-1], "method": "closed_form"}
+    found = nh.flow(OFFSET, **back, events=[nh.cusp]).events["cusp"]
     assert found.direction.tolist() == [-1]
     assert abs(found.time[0] - CUSP) < 1e-14 * 10 * np.exp(5)  # errors of the state grow backwards as e^(aEt)
-
-
-def test_functions_without_a_value_are_refused() -> None:
-    """A function that does not give a number at the first state is refused before the flow is solved."""
-    with pytest.raises(ValueError, match=r"displacement.*needs a discrete orbit"):
-        nh.flow(OFFSET, body_velocity=VELOCITY, times=TIMES, events=[lambda orbit: orbit.displacement[:, 0, 0]])
 
 
 def test_a_flow_that_stops_in_time_does_not_fail() -> None:
@@ -343,17 +336,6 @@ def test_events_between_requested_times_are_seen() -> None:
     assert orbit.events[0].step.tolist() == [1, 1, 1, 1, 2]
 
 
-ROWS = {"restricted_velocity": np.random.default_rng(3).normal(size=(9, 2)) * (1.5, 3.0)}
-TILT = nh.Event(lambda orbit: orbit.configuration[:, 0, 0], name="tilt")
-SIDE = nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="side", stop=2)
-
-
-def alone(batch: nh.Ensemble, member: int, events: list[nh.Event], **run: object) -> nh.Orbit:
-    """The run of one member by itself."""
-    start = {"restricted_velocity": ROWS["restricted_velocity"][member]}
-    return nh.simulate(batch.members.of(member), **start, steps=120, throw=False, events=events, **run)  # type: ignore
-
-
 CASES = {
     "sleighs": (SLEIGH, [SIDE, nh.cusp], {}),
     "sleighs that differ": (SLEIGH, [nh.cusp, SIDE], {"a": np.linspace(0.1, 0.9, 9), "time_step": np.full(9, 0.05)}),
@@ -371,7 +353,8 @@ def test_members_have_the_crossings_of_their_own_runs(name: str, every: int | No
     batch = nh.ensemble(discrete, **ROWS, steps=120, save_every=every, parameters=parameters or None, events=events)
     assert sum(int(found.count.sum()) for found in batch.events.found) > 5
     for member in range(len(batch)):
-        orbit = alone(batch, member, events, save_every=every or 1)
+        start = {"restricted_velocity": ROWS["restricted_velocity"][member], "save_every": every or 1}
+        orbit = nh.simulate(batch.members.of(member), **start, steps=120, throw=False, events=events)
         for event, found in zip(batch.events.found, orbit.events.found, strict=True):
             assert event.count[member] == len(found)
             for states, which in ((event.first, 0), (event.last, -1)):
@@ -407,29 +390,6 @@ def test_blocks_of_members_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> Non
         assert np.array_equal(one.count, other.count)
         assert np.array_equal(one.last.pose, other.last.pose, equal_nan=True)
     assert np.array_equal(times, whole.events["cusp"].first.time[:, 0], equal_nan=True)
-
-
-def test_later_crossings_of_the_last_step_are_left_out() -> None:
-    """Of crossings in the step in which a member ends those after its end do not count, whatever their order."""
-    turn = np.arctan(0.2)
-    events = [
-        nh.Event(lambda orbit, at=at: orbit.time - (2.0 + at), stop=stop, name=f"at_{1000 * at:.0f}")
-        for at, stop in ((0.09, True), (0.02, False), (0.07, True), (0.08, False))
-    ]
-    batch = nh.ensemble(SLEIGH, restricted_velocity=[[turn, 1.0]], steps=50, events=events)
-    assert [int(found.count[0]) for found in batch.events.found] == [0, 1, 1, 0]
-    assert batch.events.stopped_by.tolist() == [2]
-    assert batch.steps_done.tolist() == [20]
-
-
-def test_a_stop_of_a_member_at_a_state_keeps_it() -> None:
-    """A member that stops exactly at a state keeps that state."""
-    events = [nh.Event(lambda orbit: orbit.time - 2.0, stop=True)]
-    batch = nh.ensemble(SLEIGH, **ROWS, steps=50, save_every=5, events=events)
-    plain = nh.ensemble(SLEIGH, **ROWS, steps=20, save_every=5)
-    assert batch.steps_done.tolist() == [20] * len(batch)
-    assert np.array_equal(batch.pose[:, :5], plain.pose)
-    assert np.isnan(batch.pose[:, 5:]).all()
 
 
 def test_members_that_fail_keep_their_crossings() -> None:

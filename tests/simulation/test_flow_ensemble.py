@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies import mass_tensor
+from comparisons import assert_member, assert_same
 from refusals import refusals
 
 import nonholo as nh
@@ -37,40 +38,38 @@ OWN: dict[str, tuple[AbstractSystem, dict[str, np.ndarray]]] = {
     "sleigh on SE(3)": (nh.MultidimensionalSleigh(1.0, np.ones(3), TENSORS[3][0]), {"mass": RNG.uniform(1, 2, 7)}),
     "arrowhead": (nh.SuslovTop.arrowhead(np.arange(1.0, 5.0), np.ones(3)), {"coupling": RNG.normal(size=(7, 3))}),
     "right-invariant": (SYSTEMS["right-invariant"], {"mass_tensor": TENSORS[3]}),
+    "sleighs that rub": (nh.Forced(SLEIGH, force=nh.Friction(0.1 * np.eye(3))), {"a": RNG.normal(size=7)}),
 }
 
 
-def _same(member: nh.Orbit, alone: nh.Orbit) -> bool:
-    pairs = [
-        (getattr(member, name), getattr(alone, name))
-        for name in ("reduced_momentum", "canonical_pose", "turned")
-        if getattr(alone, name) is not None
-    ]
-    return all(np.array_equal(a, b) for a, b in pairs)
+def _assert_same(member: nh.Orbit, alone: nh.Orbit) -> None:
+    names = ("reduced_momentum", "canonical_pose", "turned")
+    assert_same(member, alone, *(name for name in names if getattr(alone, name) is not None))
 
 
 @pytest.mark.profile("routes", cases=["general*-False", "top on SO(7)*", "* plane-True"])
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_members_are_flows(name: str, backward: bool) -> None:
-    """More members than lanes, at rest and fast, have the bits of flows alone, with poses and without them."""
+    """More members than lanes, at rest and fast, have the bits of flows alone, from any poses and without them."""
     system, times = SYSTEMS[name], TIMES[::-1] if backward else TIMES
     w = np.random.default_rng(1).normal(size=(19, system.rank)) * np.geomspace(1e-3, 3.0, 19)[:, None]
     w[4] = 0.0
-    batch = nh.ensemble(system, restricted_velocity=w, times=times)
+    poses = system.group.exp(np.random.default_rng(9).normal(size=(19, system.group.dim)))
+    batch = nh.ensemble(system, restricted_velocity=w, configuration=poses, times=times)
     bare = nh.ensemble(system, restricted_velocity=w[:3], times=times, reconstruct=False)
     assert (batch.outcome == nh.Outcome.successful).all()
     assert bare.canonical_pose is bare.pose is None
-    for member, start in enumerate(w):
-        alone = nh.flow(system, restricted_velocity=start, times=times)
-        assert _same(batch.orbit(member), alone)
-        assert np.abs(batch.configuration[member] - alone.configuration).max() < 1e-12
-        assert np.abs(batch.momentum[member] - alone.momentum).max() < 1e-12
+    for member, (start, pose) in enumerate(zip(w, poses, strict=True)):
+        alone = nh.flow(system, restricted_velocity=start, configuration=pose, times=times)
+        _assert_same(batch.orbit(member), alone)
+        assert_member(batch, member, alone, "configuration", "momentum", "body_velocity")
+        assert batch.first_energy[member] == pytest.approx(alone.energy[0], rel=1e-14)
         if member < 3:
             without = nh.flow(system, restricted_velocity=start, times=times, reconstruct=False)
             assert not bare.orbit(member).has_poses
-            assert _same(bare.orbit(member), without)
-    few = nh.ensemble(system, restricted_velocity=w[7:9], times=times)
+            _assert_same(bare.orbit(member), without)
+    few = nh.ensemble(system, restricted_velocity=w[7:9], configuration=poses[7:9], times=times)
     assert np.array_equal(few.reduced_momentum, batch.reduced_momentum[7:9])
     assert np.array_equal(few.canonical_pose, batch.canonical_pose[7:9])
 
@@ -82,9 +81,12 @@ def test_members_with_their_own_parameters(name: str) -> None:
     w = RNG.normal(size=(7, system.rank))
     batch = nh.ensemble(system, restricted_velocity=w, times=(0.0, 2.0), parameters=own)
     for member, velocity in enumerate(w):
-        alone = nh.flow(batch.members.of(member).system, restricted_velocity=velocity, times=(0.0, 2.0))
-        assert _same(batch.orbit(member), alone)
-        assert np.abs(batch.energy[member] / alone.energy[0] - 1).max() < 1e-14
+        body = batch.members.of(member).system
+        assert all(np.array_equal(getattr(body.inside, field), values[member]) for field, values in own.items())
+        alone = nh.flow(body, restricted_velocity=velocity, times=(0.0, 2.0))
+        _assert_same(batch.orbit(member), alone)
+        wanted = alone.energy if system.is_forced else alone.energy[0]
+        assert np.abs(batch.energy[member] / wanted - 1).max() < 1e-14
         if name == "sleighs":
             assert np.abs(batch.heading[member] - alone.heading).max() < 1e-12
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from bodies import OTHERS
 from comparisons import assert_near
-from simulation.test_forced_maps import HEAVY, RUB, TOP, VESELOVA
+from simulation.forces import HEAVY, RUB, TOP, VESELOVA, drive, hill, start_of
 
 import nonholo as nh
 from nonholo.systems import AbstractSystem
@@ -44,28 +44,13 @@ CASES: dict[str, tuple[AbstractSystem, Callable[[float], dict[str, Any]]]] = {
 }
 
 
-def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """A force of time, pose and velocity."""
-    return np.cos(3 * time + np.arange(len(w))) - 0.2 * w * np.roll(w, 1) + 0.3 * g[0, 1]
-
-
-def _hill(g: np.ndarray) -> float:
-    """A potential."""
-    return float(np.sum((g[:2] - 0.3) ** 2) / 2 + np.sin(g[0, 1]))
-
-
-def _start(system: AbstractSystem) -> dict[str, Any]:
-    g = system.group.exp(0.2 * np.random.default_rng(3).normal(size=system.group.dim))
-    return {"restricted_velocity": [0.5, -0.3, 0.4, 0.2][: system.rank], "configuration": g}
-
-
 @pytest.mark.profile("routes", keep=["Heisenberg", "own constraint"])
 @pytest.mark.parametrize("name", CASES)
 def test_steps_are_of_order_two(name: str) -> None:
     """Momentum, pose and balance fall with the square of the step beside the flow; no force is the free map."""
     system, how = CASES[name]
-    forced = nh.Forced(system, _hill, (_push, nh.Friction(np.linspace(0.1, 0.2, system.group.dim))))
-    start, missed = _start(system), []
+    forced = nh.Forced(system, hill, (drive, nh.Friction(np.linspace(0.1, 0.2, system.group.dim))))
+    start, missed = start_of(system), []
     flow = nh.flow(forced, **start, times=(0.0, 0.8))
     for h in (0.08, 0.04):
         orbit = nh.simulate(nh.discretize(forced, h, **how(h)), **start, steps=round(0.8 / h))
@@ -145,14 +130,14 @@ def test_the_definition_has_the_kicks_of_the_kernels(system: AbstractSystem) -> 
     """By the definition kicks give the orbit of the compiled step, with its multipliers, its parts and its refusals."""
     rows = np.random.default_rng(4).normal(size=(12, 3))
     discrete = nh.discretize(nh.Forced(system, HEAVY, (RUB, rows), "variational"), 0.1)
-    kernel, defined = (nh.simulate(discrete, **_start(system), steps=12, backend=each) for each in ("auto", "jax"))
+    kernel, defined = (nh.simulate(discrete, **start_of(system), steps=12, backend=each) for each in ("auto", "jax"))
     assert_near(defined, kernel, 1e-13, "momentum", "configuration", "multipliers", "energy", "work")
     shares = np.array([0.3, 1.0])
     parts = [each.motion.after_parts(each[4:6], shares) for each in (defined, kernel)]
     assert_near(parts[0], parts[1], 1e-13, "restricted_momentum", "configuration")
     rows[6, 0] = 1e3
-    ended = nh.simulate(discrete, **_start(system), steps=12, backend="jax", throw=False)
-    again = nh.simulate(nh.discretize(discrete.system, 0.1), **_start(system), steps=12, throw=False)
+    ended = nh.simulate(discrete, **start_of(system), steps=12, backend="jax", throw=False)
+    again = nh.simulate(nh.discretize(discrete.system, 0.1), **start_of(system), steps=12, throw=False)
     assert (ended.outcome, len(ended)) == (again.outcome, len(again))
 
 

@@ -107,6 +107,7 @@ SPRING = LagrangeDAlembert(
     force=lambda time, q, v, p: jnp.sin(p["rate"] * time) - 0 * v,  # noqa: ARG005
     parameters={"mass": 1.0, "rate": 2.0},
 )
+READ = "time", "configuration", "body_velocity", "momentum", "multipliers", "energy"
 FLOWS = {
     "on a group": (BALL.system, {"body_velocity": BALL.body_velocity * np.array([[1.0], [-2.0]])}, {}),
     "driven": (SPRING, {"configuration": [0.5], "momentum": [[1.0], [2.0]]}, {"mass": [1.0, 3.0]}),
@@ -128,9 +129,7 @@ def test_members_of_flows_are_flows_alone(name: str, rtol: float | None) -> None
         alone = system.with_parameters(**own) if own else system
         first = {what: np.asarray(x)[member if np.ndim(x) == 2 else ...] for what, x in start.items()}
         orbit = nh.flow(alone, times=times, rtol=rtol, **first)
-        assert_member(
-            batch, member, orbit, "time", "configuration", "body_velocity", "momentum", "multipliers", "energy"
-        )
+        assert_member(batch, member, orbit, *READ)
         assert np.array_equal(energies[member], orbit.energy)
         assert np.array_equal(batch.orbit(member).configuration, orbit.configuration)
     assert batch.to_dataset().configuration.shape[:2] == (2, 3)

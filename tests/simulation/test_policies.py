@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from problems import EVERY
 from references import golden, numbers
 from refusals import refusals
 
@@ -17,11 +18,10 @@ from nonholo.simulation.traced import with_traced_potential
 
 SLEIGH = nh.ChaplyginSleigh(1.5, 0.7, 0.4, 0.2)
 TABLE = np.outer(np.cos(np.arange(20)), [0.4, -0.3, 0.2])
-ROWS = [[1.0, 0.0, 1.0, 0.75, -0.5, 0.75], [0.0, 1.0, 0.0, 0.5, 0.25, -1.0]]
 RUB, HEAVY = nh.Friction(np.eye(3) / 5 + 0.1), nh.Gravity([0.2, -1.0], [0.5, 0.1])
 GROUPS = {
     "closed form": SLEIGH,
-    "matrices": nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=ROWS),
+    "matrices": EVERY["any d on SE(3)"],
     "in space": nh.VeselovaTop(np.diag([1.0, 2.0, 1.5]) + 0.1),
     "top": nh.Forced(nh.SuslovTop(np.eye(3) + 0.1), force=(RUB, TABLE)),
     "kicks": nh.Forced(SLEIGH, HEAVY, (RUB, TABLE), "variational"),
@@ -183,18 +183,14 @@ def test_forces_are_those_of_differences(discrete: Any) -> None:
     traced = with_traced_potential("rollout", discrete).system
     for size in (0.7, 1e-3, 1e-9, 0.0):
         g, W = group.exp(rng.normal(size=group.dim)), group.exp(size * rng.normal(size=group.dim))
-        step = g[None], W[None], 0.1, np.zeros((1, group.dim))
+        rest, places = np.zeros(group.dim), ("potential_energy", "potential_force")
         with jax.enable_x64(True):
-            mean = traced.mean_force(jnp.asarray(g), jnp.asarray(W), 0.1, jnp.zeros(group.dim))
-            pairs = (
-                (mean, given.mean_force(*step, time=np.zeros(1))[0]),
-                *(
-                    (getattr(traced, name)(jnp.asarray(g)), getattr(given, name)(g))
-                    for name in ("potential_energy", "potential_force")
-                ),
-            )
-        for found, wanted in pairs:
-            np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-11)
+            found = [traced.mean_force(jnp.asarray(g), jnp.asarray(W), 0.1, jnp.asarray(rest))]
+            found += [getattr(traced, name)(jnp.asarray(g)) for name in places]
+        wanted = [given.mean_force(g[None], W[None], 0.1, rest[None], time=np.zeros(1))[0]]
+        wanted += [getattr(given, name)(g) for name in places]
+        for one, other in zip(found, wanted, strict=True):
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-11)
 
 
 @pytest.mark.profile("routes", instead="test_forces_are_those_of_differences")
@@ -215,8 +211,7 @@ def test_rollout_is_the_run_and_its_derivatives_are_differences(scheme: str) -> 
     for i, found in enumerate(zip(forward, reverse, strict=True)):
         high, low = (end(*(np.array([0.8, 1.0]) + to), nh.simulate) for to in (h * np.eye(2)[i], -h * np.eye(2)[i]))
         wanted = (high - low) / (2 * h)
-        for one in found:
-            np.testing.assert_allclose(one, wanted, rtol=0, atol=1e-8)
+        np.testing.assert_allclose(found, [wanted, wanted], rtol=0, atol=1e-8)
 
 
 def _branching(g: Any) -> Any:

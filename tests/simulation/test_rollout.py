@@ -8,7 +8,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from bodies import OTHERS
+from comparisons import assert_near
+from problems import EVERY
 from references import golden, numbers
 from refusals import refusals
 
@@ -32,11 +33,9 @@ def _symmetric(triangle: jax.Array, size: int) -> jax.Array:
 BODIES: dict[str, Callable[[jax.Array], AbstractSystem]] = {
     "top": lambda x: nh.SuslovTop(_symmetric(x, 3)),
     "tilted top": lambda x: nh.SuslovTop(_symmetric(x, 3), axis=(0.6, 0.0, 0.8)),
-    "sleigh": lambda x: nh.ChaplyginSleigh(*x),
     "four": lambda x: nh.SuslovTop(_symmetric(x, 4)),
     "mixed": lambda x: nh.LLSystem(nh.SE(3), _symmetric(x, 4), constraint_subspace=MIXED),
-    "driven sleigh": lambda x: nh.ChaplyginSleigh(*x),
-    "heavy sleigh": lambda x: nh.ChaplyginSleigh(*x),
+    **dict.fromkeys(("sleigh", "driven sleigh", "heavy sleigh"), lambda x: nh.ChaplyginSleigh(*x)),
 }
 
 
@@ -93,42 +92,29 @@ def test_reverse_mode_agrees_with_forward_mode() -> None:
         np.testing.assert_allclose(pull(_point("heavy sleigh at rest")), derivative @ weights, rtol=1e-12, atol=1e-12)
 
 
-def _assert_same(found: Rollout, orbit: nh.Orbit, tolerance: float) -> None:
-    for field in FIELDS:
-        np.testing.assert_allclose(getattr(found, field), getattr(orbit, field), rtol=0, atol=tolerance)
-
-
-SYSTEMS = [
-    pytest.param(TOP, {}, id="top"),
-    pytest.param(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), (0.6, 0.0, 0.8)), {}, id="tilted top"),
-    pytest.param(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), {}, id="offset sleigh"),
-    pytest.param(nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1), {}, id="four"),
-    pytest.param(nh.SuslovTop.arrowhead([1.0, 2.0, 1.5, 1.0], [0.3, 0.2, 0.1]), {}, id="arrowhead"),
-    pytest.param(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.2], np.diag([1.0, 2.0, 1.5])), {}, id="in space"),
-    pytest.param(nh.RigidBody(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="free body"),
-    pytest.param(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]) + 0.1), {}, id="Veselova top"),
-    pytest.param(nh.LRSystem(nh.SE(2), np.eye(3) + 0.1, np.eye(3)[:2]), {}, id="fixed in the plane"),
-    pytest.param(nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=MIXED), {}, id="mixed"),
-    *(pytest.param(OTHERS[name], {}, id=name) for name in ("Heisenberg", "product")),
-    *(pytest.param(TOP, {"order": order}, id=f"order {order}") for order in (4, 6, 8)),
-    pytest.param(TOP, {"difference": "logarithmic"}, id="logarithmic"),
-    pytest.param(nh.Forced(TOP, HEAVY, RUB), {}, id="heavy, with friction"),
-    pytest.param(nh.Forced(TOP, HEAVY, (RUB, TABLE)), {}, id="heavy, with friction and a table"),
-    pytest.param(nh.Forced(nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3), force=TABLE), {}, id="driven"),
-    pytest.param(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY, RUB), {}, id="forces, fixed in space"),
-]
+_OTHERS = ("tilted top", "offset sleigh", "suslov 4", "sleigh 3", "free on SO(4)", "veselova 3")
+_OTHERS += ("right-invariant on SE(2)", "any d on SE(3)", "Heisenberg", "product")
+CASES_OF_VALUES: dict[str, tuple[AbstractSystem, dict[str, Any]]] = {
+    "top": (TOP, {}),
+    **{name: (EVERY[name], {}) for name in _OTHERS},
+    "arrowhead": (nh.SuslovTop.arrowhead([1.0, 2.0, 1.5, 1.0], [0.3, 0.2, 0.1]), {}),
+    **{f"order {order}": (TOP, {"order": order}) for order in (4, 6, 8)},
+    "logarithmic": (TOP, {"difference": "logarithmic"}),
+    "heavy, with friction": (nh.Forced(TOP, HEAVY, RUB), {}),
+    "heavy, with friction and a table": (nh.Forced(TOP, HEAVY, (RUB, TABLE)), {}),
+    "driven": (nh.Forced(EVERY["offset sleigh"], force=TABLE), {}),
+    "forces, fixed in space": (nh.Forced(EVERY["veselova 3"], HEAVY, RUB), {}),
+}
+SYSTEMS = pytest.mark.parametrize(("system", "options"), CASES_OF_VALUES.values(), ids=CASES_OF_VALUES)
 
 
 @pytest.mark.profile("routes", keep=["top"])
-@pytest.mark.parametrize(("system", "options"), SYSTEMS)
+@SYSTEMS
 def test_values_are_those_of_simulate(system: AbstractSystem, options: dict, caplog: pytest.LogCaptureFixture) -> None:
     """Eager rollouts are NumPy arrays that agree with the compiled orbit to rounding, state by state, at any length."""
     discrete = nh.discretize(system, 0.1, **options)
-    velocity = np.linspace(0.4, 0.6, system.rank)
-    start = {
-        "restricted_velocity": velocity,
-        "configuration": system.group.exp(np.linspace(0.1, 0.5, system.group.dim)),
-    }
+    pose = system.group.exp(np.linspace(0.1, 0.5, system.group.dim))
+    start = {"restricted_velocity": np.linspace(0.4, 0.6, system.rank), "configuration": pose}
     found = nh.rollout(discrete, **start, steps=50)
     with jax.log_compiles(), caplog.at_level("WARNING"):
         shorter = nh.rollout(discrete, **start, steps=30)
@@ -136,7 +122,7 @@ def test_values_are_those_of_simulate(system: AbstractSystem, options: dict, cap
     assert all(map(np.array_equal, shorter[:-2], (x[:31] for x in found[:-2])))
     assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in found[:-1])
     assert found.outcome == 0
-    _assert_same(found, nh.simulate(discrete, **start, steps=50), 1e-13)
+    assert_near(found, nh.simulate(discrete, **start, steps=50), 1e-13, *FIELDS)
 
 
 def _symmetrized(x: np.ndarray) -> np.ndarray:
@@ -144,7 +130,7 @@ def _symmetrized(x: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
-@pytest.mark.parametrize(("system", "options"), SYSTEMS)
+@SYSTEMS
 def test_gradients_of_every_system_are_differences(system: AbstractSystem, options: dict) -> None:
     """By all numbers of body, forces, time step and start at once the gradient is a difference of `simulate`."""
     rng = np.random.default_rng(0)

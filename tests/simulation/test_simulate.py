@@ -36,26 +36,6 @@ def test_parts_of_a_thinned_orbit_are_thinned() -> None:
         assert [part.save_every for part in (thin[1:4], thin[::2], thin[::2][1:])] == [6, 12, 12]
 
 
-def test_shapes_of_an_orbit() -> None:
-    """An orbit of steps = N has N + 1 states and N multipliers; W_N is computed, g_{N+1} is not."""
-    orbit = nh.simulate(SLEIGH, body_velocity=(0.5, 1.0, 0.0), steps=7)
-    shapes = {
-        "time": (8,), "momentum": (8, 3), "restricted_momentum": (8, 2), "chart": (8, 2), "displacement": (8, 3, 3),
-        "configuration": (8, 3, 3), "body_velocity": (8, 3), "spatial_momentum": (8, 3), "position": (8, 2),
-        "heading": (8,), "multipliers": (7, 1), "energy": (8,),
-    }  # fmt: skip
-    assert {name: getattr(orbit, name).shape for name in shapes} == shapes
-    g, W = orbit.configuration, orbit.displacement
-    assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() < 1e-14
-
-
-def test_heading_is_unwrapped() -> None:
-    """A balanced sleigh turning on the spot gains heading beyond a full turn."""
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
-    orbit = nh.simulate(discrete, body_velocity=(1.0, 0.0, 0.0), steps=200)
-    assert orbit.heading[-1] == pytest.approx(200 * np.arcsin(0.1), rel=1e-13)
-
-
 def test_zero_velocity_stays() -> None:
     """At rest every displacement is the identity and nothing is NaN."""
     for discrete in (TOP, SLEIGH):
@@ -78,16 +58,6 @@ def test_a_run_keeps_its_good_steps() -> None:
         nh.simulate(discrete, **start)
     assert np.array_equal(caught.value.orbit.momentum, orbit.momentum)
     assert caught.value.outcome == nh.Outcome.no_real_branch
-
-
-def test_a_start_beyond_the_fold_is_empty() -> None:
-    """With throw=False a start without principal root gives an orbit of no states and says why."""
-    discrete = nh.discretize(PROBLEMS[0].system, 1.0)
-    orbit = nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3, throw=False)
-    assert len(orbit) == 0
-    assert orbit.outcome == nh.Outcome.no_real_branch
-    with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
-        nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3)
 
 
 def test_the_way_to_a_variety_that_is_no_exponential() -> None:

@@ -9,32 +9,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparisons import assert_near
+from simulation.forces import HEAVY, SLEIGH, TOP, VESELOVA, drive
 
 import nonholo as nh
 from nonholo.io.orbits import load_states
 from nonholo.simulation import _run as _run_room
 
 H = 0.05
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
-VESELOVA = nh.VeselovaTop(TOP.mass_tensor)
 FOUR = nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1)
 TABLE = np.random.default_rng(3).normal(size=(100, 3))
-HEAVY = nh.Gravity(force=[0.2, -0.3, -1.0], point=[0.1, 0.2, 0.3])
-
-
-def waving(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """A force that depends on everything."""
-    return np.sin(7 * time) * g[0] - 0.1 * time * w
-
-
 FORCED = {
     "table on a top": nh.Forced(TOP, force=TABLE),
     "table and weight on a top": nh.Forced(TOP, HEAVY, (TABLE, nh.Friction([0.1, 0.2, 0.3]))),
     "table on a sleigh": nh.Forced(SLEIGH, force=TABLE),
-    "table and function on a sleigh": nh.Forced(SLEIGH, force=(TABLE, waving)),
-    "function on a top": nh.Forced(TOP, force=waving),
-    "table fixed in space": nh.Forced(VESELOVA, force=(TABLE, waving)),
+    "table and function on a sleigh": nh.Forced(SLEIGH, force=(TABLE, drive)),
+    "function on a top": nh.Forced(TOP, force=drive),
+    "table fixed in space": nh.Forced(VESELOVA, force=(TABLE, drive)),
 }
 STEPPED: dict[str, Callable[..., Any]] = {
     "scalar": lambda **run: _run(TOP, **run),
@@ -44,8 +35,8 @@ STEPPED: dict[str, Callable[..., Any]] = {
     "branch rule": lambda **run: _run(SLEIGH, branch="nearest", **run),
     "table": lambda **run: _run(FORCED["table on a top"], **run),
     "function in Python": lambda **run: _run(FORCED["function on a top"], **run),
-    "coordinates": lambda **run: _example(nh.examples.particle(), **run),
-    "group": lambda **run: _example(nh.examples.chaplygin_ball(), **run),
+    "coordinates": lambda **run: nh.examples.particle().simulate(time_step=H, **run),
+    "group": lambda **run: nh.examples.chaplygin_ball().simulate(time_step=H, **run),
 }
 
 
@@ -55,14 +46,6 @@ def _start(system: Any) -> dict[str, np.ndarray]:
 
 def _run(system: Any, *, order: int = 2, **run: Any) -> nh.Orbit:
     return nh.simulate(nh.discretize(system, H, order=order), **_start(system), **run)
-
-
-def _here(example: Any) -> dict[str, Any]:
-    return {"configuration": example.configuration, "body_velocity": example.body_velocity}
-
-
-def _example(example: Any, **run: Any) -> Any:
-    return nh.simulate(nh.discretize(example.system, H), **_here(example), **run)
 
 
 def _level(states: nh.Orbit) -> np.ndarray:
@@ -124,9 +107,7 @@ def test_rows_that_are_not_finite_are_no_success(system: Any, column: int, most:
 @pytest.mark.parametrize("system", [TOP, FOUR], ids=["scalar", "matrices"])
 def test_an_orbit_keeps_the_memory_of_its_columns_alone(system: Any, reconstruct: bool) -> None:
     """Poses of the kernel that are not saved, or that are decoded anew, are given back."""
-    orbit = nh.simulate(
-        nh.discretize(system, H), restricted_velocity=[0.1] * system.rank, steps=9, reconstruct=reconstruct
-    )
+    orbit = _run(system, steps=9, reconstruct=reconstruct)
     columns = [each for each in (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose) if each is not None]
     memory = {id(owner): owner.nbytes for each in columns for owner in [each if each.base is None else each.base]}
     assert sum(memory.values()) == sum(each.nbytes for each in columns)
@@ -176,10 +157,10 @@ def test_members_of_ensembles_know_their_steps(every: int | None, steps: list[in
 
 def test_motions_without_steps_number_their_rows() -> None:
     """Flows the requested times, also of `at` and in coordinates, and given poses their rows."""
-    run, particle = _run(TOP, steps=10), nh.examples.particle()
+    run = _run(TOP, steps=10)
     flows = (
         nh.flow(TOP, **_start(TOP), times=np.linspace(0, 1, 11)),
-        nh.flow(particle.system, **_here(particle), times=np.linspace(0, 1, 11)),
+        nh.examples.particle().flow(times=np.linspace(0, 1, 11)),
         nh.Orbit.from_poses(TOP, run.time, run.configuration),
         nh.ensemble(TOP, restricted_velocity=np.ones((2, 2)), times=np.linspace(0, 1, 11)).orbit(1),
     )
@@ -233,33 +214,21 @@ def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
 
 @pytest.mark.profile("problems", keep=["table and*"])
 @pytest.mark.parametrize("name", FORCED)
-def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
+def test_events_under_forces_are_where_a_shorter_step_arrives(name: str) -> None:
     """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
-    forced = FORCED[name]
-    event = nh.Event(_level, name="level")
-    found = nh.simulate(nh.discretize(forced, H), **_start(forced), steps=100, events=[event]).events[0]
-    whole = _whole(name)
+    forced, whole = FORCED[name], _whole(name)
+    found = _run(forced, steps=100, events=[_level]).events[0]
     assert len(found) > 0
+    assert np.abs(_level(found.states)).max() < 4e-15  # ulps of 3 t = 15
     k, fraction = int(found.step[-1]), float(found.fraction[-1])
-    begin, row = whole.time[k], None if forced.table is None else np.asarray(forced.table)[k : k + 1]
-    parts = [] if row is None else [row]
+    parts = [] if forced.table is None else [np.asarray(forced.table)[k : k + 1]]
     parts += [] if forced.friction is None else [forced.friction]
     if forced.function is not None:
-        parts.append(lambda time, g, w: waving(begin + time, g, w))
+        parts.append(lambda time, g, w: drive(whole.time[k] + time, g, w))
     moved = nh.Forced(forced.system, forced.potential, tuple(parts) if len(parts) > 1 else parts[0])
     start = {"momentum": whole.restricted_momentum[k], "configuration": whole.configuration[k]}
-
-    def value(s: float) -> float:
-        states = nh.simulate(nh.discretize(moved, s * H), **start, steps=1, throw=False)
-        return float(0.05 * states.restricted_momentum[1, 1] + np.sin(3 * (begin + s * H)))
-
-    low, high, sign = 2.0**-30, 1.0, np.sign(_level(whole[k : k + 1])[0])
-    for _ in range(44):
-        middle = (low + high) / 2
-        low, high = (middle, high) if np.sign(value(middle)) == sign else (low, middle)
-    slope = abs(value(high) - value(low - 1e-3)) / 1e-3
-    assert abs(fraction - low) < 2**-43 + 4e-15 / slope
-    assert np.abs(_level(found.states)).max() < 4e-15  # ulps of 3 t = 15
+    there = nh.simulate(nh.discretize(moved, fraction * H), **start, steps=1)
+    assert_near(there[1:], found.states[-1:], 4e-15, "restricted_momentum", "configuration")
 
 
 def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:
@@ -272,16 +241,10 @@ def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:
         assert len(later)
 
 
-def test_events_without_poses_are_refused_where_forces_depend_on_them() -> None:
-    """A weight acts by the pose: without poses its parts of steps would be those of another pose."""
-    heavy = nh.discretize(nh.Forced(TOP, HEAVY), H)
-    with pytest.raises(ValueError, match=r"Got a step that depends on the pose, without reconstruct=True"):
-        nh.simulate(heavy, **_start(TOP), steps=5, reconstruct=False, events=[lambda o: o.restricted_momentum[:, 0]])
+def test_events_need_no_poses_where_forces_do_not() -> None:
+    """Under friction and a table crossings of momenta are those of the run with its poses."""
     rubbed = nh.discretize(nh.Forced(TOP, force=(TABLE, nh.Friction([0.1, 0.2, 0.3]))), H)
-    level = nh.Event(_level, name="level")
-    with_poses, without = (
-        nh.simulate(rubbed, **_start(TOP), steps=100, reconstruct=posed, events=[level]).events[0]
-        for posed in (True, False)
-    )
+    run = {**_start(TOP), "steps": 100, "events": [_level]}
+    with_poses, without = (nh.simulate(rubbed, **run, reconstruct=posed).events[0] for posed in (True, False))
     assert len(without)
     assert np.array_equal(with_poses.time, without.time)
