@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import jax.numpy as jnp
+import mpmath
 import numpy as np
 import pytest
 from analysis.equations import G, hoop, momentum_rate
@@ -59,18 +60,24 @@ def test_multipliers_are_those_of_the_map(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["top 3", "sleigh 2"])
-def test_multipliers_in_closed_form(name: str) -> None:
+def test_multiplier_in_thirty_digits(name: str) -> None:
     """For n = 3 (D z0 - zeta q_c)/(D z0 + zeta q_c), for the sleigh (2I - a p_1)/(2I + a p_1), to 1e-14."""
     system = SYSTEMS[name]
-    if name == "sleigh 2":
-        kept = 2 * (system.inertia + system.mass * system.a**2)
-        lost = STEP * system.a * np.sqrt(2 * system.mass * ENERGY)
-    else:
-        B, c = system.constrained_inertia, system.coupling
-        half = np.arcsin(STEP * np.sqrt(2 * ENERGY / (c @ B @ c) * (c @ c))) / 2
-        kept, lost = np.linalg.det(B) * np.cos(half), np.sin(half) / np.sqrt(c @ c) * (c @ B @ c)
     found = nh.equilibria(nh.discretize(system, STEP), ENERGY)
-    assert abs(found.multipliers[0] - (kept - lost) / (kept + lost)) <= 1e-14
+    with mpmath.workdps(30):
+        h, E = mpmath.mpf(STEP), mpmath.mpf(ENERGY)
+        if name == "sleigh 2":
+            m, J, a = (mpmath.mpf(float(x)) for x in (system.mass, system.inertia, system.a))
+            push = h * a * mpmath.sqrt(2 * m * E)
+            expected = (2 * (J + m * a * a) - push) / (2 * (J + m * a * a) + push)
+        else:
+            (p, q), (_, r) = ([mpmath.mpf(x) for x in row] for row in system.constrained_inertia.tolist())
+            c = [mpmath.mpf(x) for x in system.coupling.tolist()]
+            D, qc, square = p * r - q * q, p * c[0] ** 2 + 2 * q * c[0] * c[1] + r * c[1] ** 2, c[0] ** 2 + c[1] ** 2
+            half = mpmath.asin(h * mpmath.sqrt(2 * E / qc * square)) / 2
+            z0, zeta = mpmath.cos(half), mpmath.sin(half) / mpmath.sqrt(square)
+            expected = (D * z0 - zeta * qc) / (D * z0 + zeta * qc)
+    assert abs(found.multipliers[0] - float(expected)) <= 1e-14
 
 
 def test_large_steps_alternate() -> None:

@@ -225,3 +225,15 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
     orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=4), steps=2000)
     assert discrete.conserves_energy
     assert nh.invariants(orbit).energy_drift <= 1e-12
+
+
+def test_reversal_and_reconstruction() -> None:
+    """One step back returns, poses are products of displacements, and boosts keep the direction of time."""
+    orbit = _run("SO(3,1)", 3, 40)
+    found = nh.invariants(orbit)
+    assert found.reversal_defect <= 1e-12
+    assert found.group_residual <= 1e-13
+    g, W = orbit.configuration, orbit.displacement
+    assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() <= 1e-13 * np.abs(g).max()
+    assert np.all(W[:, 3, 3] >= 1)
+    assert np.all(np.linalg.det(W) > 0)

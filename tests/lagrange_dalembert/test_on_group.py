@@ -404,3 +404,28 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
     assert np.array_equal(np.ma.getdata(panels[0].collections[0].get_offsets()), orbit.configuration[:, :2, 2])
     titles = ["Reference point", "Body velocity", "Energy error", "Residual of the constraint"]
     assert [axes.get_title(loc="left") for axes in panels] == titles
+
+
+@pytest.mark.profile("routes", instead="test_the_flow_is_the_published_solution")
+def test_the_flow_solves_the_equations() -> None:
+    """Pose and velocity agree with an independent integration of hand-written equations."""
+    x, y = START["configuration"][:2, 2]
+    first = np.concatenate([[0.4, x, y], admissible(0.9, 1.0)])
+    z = solve_ivp(rates, (0, 2), first, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    assert np.abs(flow().configuration[-1, :2, 2] - z[1:3]).max() <= 1e-11
+    assert np.abs(flow().body_velocity[-1] - z[3:]).max() <= 1e-11
+    assert np.ptp(flow().energy) <= 1e-12
+
+
+@pytest.mark.profile("routes", instead="test_the_map_satisfies_its_constraint_and_has_order_two")
+def test_a_mixed_system_converges_with_order_two() -> None:
+    """Poses, momenta along the constraint and impulse / h, with its sign, tend to the flow; slope 2.0 +- 0.1."""
+    rows, exact = [], flow()
+    along = np.linalg.svd(np.asarray(blade(jnp.asarray(exact.configuration[-1]))))[2][1:]  # rows span the kernel of a
+    for n in (50, 100, 200, 400):
+        orbit = run(2 / n, n)
+        pose = np.abs(orbit.configuration[-1] - exact.configuration[-1]).max()
+        momentum = np.abs(along @ (orbit.momentum[-1] - exact.momentum[-1])).max()
+        rows.append((pose, momentum, abs(orbit.multipliers[n // 2 - 1, 0] * n / 2 - exact.multipliers[1, 0])))
+    for column in np.transpose(rows):
+        assert abs(-np.polyfit(np.log([50, 100, 200, 400]), np.log(column), 1)[0] - 2.0) <= 0.1
