@@ -166,8 +166,7 @@ def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
     """Without a weight, without friction and without both the motion is that of Python; friction is not negative."""
     page = visit(files[name])
     for part in ("Fxx", "c", "Fc"):
-        page.page.select_option("#preset", "own")
-        page.settle()
+        page.choose("own")
         for key in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in part]:
             page.set(key, 0.0)
         state = page.page.evaluate("nonholo.state")
@@ -216,14 +215,12 @@ def test_presets(visit: Callable, files: dict, name: str) -> None:
     names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
     assert len(names) > 4
     for value, label in names:
-        page.page.select_option("#preset", value)
-        page.settle()
+        page.choose(value)
         assert ("no real branch" in page.status) == ("no real branch" in label.lower()), label
         forced = page.page.evaluate("nonholo.state.kind").startswith("forced")
         title = "Chaplygin sleigh" if "Sleigh" in label else TITLES[name]
         assert page.page.text_content("#title") == f"{title}{', under forces' * forced}"
-    page.page.select_option("#preset", "own")
-    page.settle()
+    page.choose("own")
     _same(page, _sent(name))
     assert page.errors == []
 
@@ -296,10 +293,8 @@ def test_link(visit: Callable, files: dict, name: str, key: str) -> None:
     page = visit(files[name])
     page.set(key, 0.25)
     page.set("r1", 1.1)
-    page.page.click("#share summary")
-    page.page.click("#copy-link")
-    link = page.page.input_value("#dialog-text")
-    again = visit(files["top4" if name == "top4" else "sleigh"], "#" + link.partition("#")[2])
+    fragment = "#" + page.copied("link").partition("#")[2]
+    again = visit(files["top4" if name == "top4" else "sleigh"], fragment)
     assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
 
 
@@ -407,8 +402,7 @@ def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path
     page = visit(files[name])
     page.set("r2", 0.35)
     _copies_repeat(page, tmp_path)
-    page.page.select_option("#preset", "0")
-    page.settle()
+    page.choose("0")
     _copies_repeat(page, tmp_path)
 
 
@@ -445,17 +439,13 @@ def test_links_of_a_table(visit: Callable, files: dict) -> None:
     """A link to a motion under a table opens in pages with that table, and is refused in words by others."""
     page = visit(files["driven_top"])
     page.set("s", 0.4)
-    page.page.click("#share summary")
-    page.page.click("#copy-link")
-    fragment = "#" + page.page.input_value("#dialog-text").partition("#")[2]
+    fragment = "#" + page.copied("link").partition("#")[2]
     again = visit(files["driven_top"], fragment)
     assert again.numbers("r") == page.numbers("r")
     assert "which this page does not have" in visit(files["forced_top"], fragment).status
-    again.page.select_option("#preset", label="Top under its weight")
-    again.settle()
+    again.choose(label="Top under its weight")
     assert again.page.evaluate("[nonholo.state.table ?? null, nonholo.state.parameters.s]") == [None, 0]
-    again.page.select_option("#preset", "own")
-    again.settle()
+    again.choose("own")
     _same(again, _sent("driven_top"))
 
 
@@ -463,17 +453,12 @@ def _copies_repeat(page: Any, folder: Path) -> None:
     """Copied Python and a copied scenario, which no page in four dimensions has, give the numbers of the page."""
     from nonholo.cli.scenario.files import load_scenario
 
-    is_wide, text = page.page.evaluate("nonholo.state.kind") == "top4", {}
-    for kind in ("python", "toml")[: 1 if is_wide else 2]:
-        page.page.click("#share summary")
-        page.page.click(f"#copy-{kind}")
-        text[kind] = page.page.input_value("#dialog-text")
-        page.page.click("#dialog-close")
+    is_wide = page.page.evaluate("nonholo.state.kind") == "top4"
     names: dict[str, Any] = {}
-    exec(text["python"], names)  # noqa: S102
+    exec(page.copied("python"), names)  # noqa: S102
     _same(page, names["orbit"], poses=1e-14 * is_wide)
     if not is_wide:
-        (folder / "copied.toml").write_text(text["toml"])
+        (folder / "copied.toml").write_text(page.copied("toml"))
         scenario = load_scenario(str(folder / "copied.toml"), []).scenario
         _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
 

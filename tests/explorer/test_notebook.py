@@ -1,12 +1,10 @@
 """The live page and pictures in notebooks: what sliders say in Python, notebooks that run, a real JupyterLab."""
 
-import functools
 import math
 import os
 import re
 import subprocess
 import sys
-import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from waiting import wait_for
 
 import nonholo as nh
 from nonholo.explorer._explore import shown_motion, simulate_state
@@ -52,11 +51,7 @@ def test_state_follows_the_widget() -> None:
     assert page.orbit().time[-1] == 3.5
 
 
-@functools.cache
-def _first_state() -> dict[str, Any]:
-    return shown_motion("explore(value=...)", SLEIGH).data["state"]
-
-
+FIRST_STATE: dict[str, Any] = shown_motion("explore(value=...)", SLEIGH).data["state"]
 ODD: dict[str, Any] = {
     "nothing": {},
     "a list": [],
@@ -92,7 +87,7 @@ ODD: dict[str, Any] = {
 def test_odd_states_are_refused(odd: str) -> None:
     """A frame may say anything: it is data, and refused in a sentence by the rules of the page itself."""
     change = ODD[odd]
-    state = {**_first_state(), **change} if isinstance(change, dict) and change else change
+    state = {**FIRST_STATE, **change} if isinstance(change, dict) and change else change
     with pytest.raises(ValueError, match=r"^`[^`]+` must .+ Got .+\."):
         simulate_state("Page.orbit()", state)
 
@@ -100,7 +95,7 @@ def test_odd_states_are_refused(odd: str) -> None:
 @pytest.mark.parametrize("missing", ["kind", "parameters", "momentum", "pose", "time_step", "steps"])
 def test_states_with_gaps_are_refused(missing: str) -> None:
     """Every entry has to be there."""
-    state = {name: value for name, value in _first_state().items() if name != missing}
+    state = {name: value for name, value in FIRST_STATE.items() if name != missing}
     with pytest.raises(ValueError, match=f"Got {missing}: Field required"):
         simulate_state("Page.orbit()", state)
 
@@ -180,15 +175,12 @@ def laboratory(tmp_path: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _address(log: Path, server: subprocess.Popen) -> str:
-    for _ in range(600):
-        found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab", log.read_text())
-        if found:
-            address = f"http://127.0.0.1:{found[1]}"
-            urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
-            return address
-        assert server.poll() is None, log.read_text()
-        time.sleep(0.1)
-    raise TimeoutError(log.read_text())
+    said = r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab"
+    wait_for(lambda: server.poll() is not None or re.search(said, log.read_text()))
+    assert server.poll() is None, log.read_text()
+    address = f"http://127.0.0.1:{re.search(said, log.read_text())[1]}"
+    urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
+    return address
 
 
 @pytest.mark.profile("browser", instead="test_state_follows_the_widget")
