@@ -38,7 +38,7 @@ def test_killed_client_goes_on(tmp_path: Path) -> None:
     """Workers of a killed client end with it; its sweep, resumed, has the same bits and leaves no rubbish."""
     path, (task, design, block) = tmp_path / "killed.zarr", faults.SWEEPS["noisy"]
     with python(f"go_on('noisy', Path({str(path)!r}), 'processes')") as client:
-        wait_for(lambda: faults.done(path) > 3 and len(_writers(path)) == 2)
+        wait_for(lambda: faults.done(path) > 3 and len(_writers(path)) == 2, seconds=400.0)  # a busy machine
         client.kill()
     wait_for(lambda: not any(map(faults.is_running, _writers(path))))
     assert faults.done(path) < design.members // block
