@@ -6,6 +6,8 @@ import itertools
 import os
 import re
 import signal
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import Command, assert_ends, assert_shows, json_of, problems_of, scenario_of
-from ensembles.faults import python
+from ensembles.faults import HEED_CTRL_C
 from stopping import failing_at
 from waiting import wait_for
 
@@ -345,8 +347,9 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
 def test_stopping_signals(name: str) -> None:
     """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to resume, and exit code 1."""
     text = RANDOM.replace("members = 12", "members = 4000000").replace("steps = 20", "steps = 50")
-    arguments = ["sweep", _written(text), "-o", "s.zarr"]
-    process = python(f"from nonholo.cli import main; sys.argv[1:] = {arguments}; main()")
+    program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
+    command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
     wait_for(lambda: list(Path().glob("s.zarr/run/blocks/*.json")))
     process.send_signal(getattr(signal, name))
     told = process.communicate(timeout=120)[1]

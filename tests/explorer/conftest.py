@@ -68,19 +68,6 @@ class Visit:
         """Return an array of the orbit in the page, all digits."""
         return self.page.evaluate(f"Array.from(nonholo.orbit.{name})")
 
-    def choose(self, value: str | None = None, **how: str) -> None:
-        """Take a ready motion, by its value or by its label."""
-        self.page.select_option("#preset", value, **how)
-        self.settle()
-
-    def copied(self, what: str) -> str:
-        """Return the text that a button of the page copies."""
-        self.page.click("#share summary")
-        self.page.click(f"#copy-{what}")
-        text = self.page.input_value("#dialog-text")
-        self.page.click("#dialog-close")
-        return text
-
     @property
     def status(self) -> str:
         """What the page says of the motion."""

@@ -166,7 +166,8 @@ def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
     """Without a weight, without friction and without both the motion is that of Python; friction is not negative."""
     page = visit(files[name])
     for part in ("Fxx", "c", "Fc"):
-        page.choose("own")
+        page.page.select_option("#preset", "own")
+        page.settle()
         for key in [each for each in page.page.evaluate("nonholo.state.parameters") if each[0] in part]:
             page.set(key, 0.0)
         state = page.page.evaluate("nonholo.state")
@@ -215,12 +216,14 @@ def test_presets(visit: Callable, files: dict, name: str) -> None:
     names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
     assert len(names) > 4
     for value, label in names:
-        page.choose(value)
+        page.page.select_option("#preset", value)
+        page.settle()
         assert ("no real branch" in page.status) == ("no real branch" in label.lower()), label
         forced = page.page.evaluate("nonholo.state.kind").startswith("forced")
         title = "Chaplygin sleigh" if "Sleigh" in label else TITLES[name]
         assert page.page.text_content("#title") == f"{title}{', under forces' * forced}"
-    page.choose("own")
+    page.page.select_option("#preset", "own")
+    page.settle()
     _same(page, _sent(name))
     assert page.errors == []
 
@@ -293,8 +296,10 @@ def test_link(visit: Callable, files: dict, name: str, key: str) -> None:
     page = visit(files[name])
     page.set(key, 0.25)
     page.set("r1", 1.1)
-    fragment = "#" + page.copied("link").partition("#")[2]
-    again = visit(files["top4" if name == "top4" else "sleigh"], fragment)
+    page.page.click("#share summary")
+    page.page.click("#copy-link")
+    link = page.page.input_value("#dialog-text")
+    again = visit(files["top4" if name == "top4" else "sleigh"], "#" + link.partition("#")[2])
     assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
 
 
@@ -402,7 +407,8 @@ def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path
     page = visit(files[name])
     page.set("r2", 0.35)
     _copies_repeat(page, tmp_path)
-    page.choose("0")
+    page.page.select_option("#preset", "0")
+    page.settle()
     _copies_repeat(page, tmp_path)
 
 
@@ -439,13 +445,17 @@ def test_links_of_a_table(visit: Callable, files: dict) -> None:
     """A link to a motion under a table opens in pages with that table, and is refused in words by others."""
     page = visit(files["driven_top"])
     page.set("s", 0.4)
-    fragment = "#" + page.copied("link").partition("#")[2]
+    page.page.click("#share summary")
+    page.page.click("#copy-link")
+    fragment = "#" + page.page.input_value("#dialog-text").partition("#")[2]
     again = visit(files["driven_top"], fragment)
     assert again.numbers("r") == page.numbers("r")
     assert "which this page does not have" in visit(files["forced_top"], fragment).status
-    again.choose(label="Top under its weight")
+    again.page.select_option("#preset", label="Top under its weight")
+    again.settle()
     assert again.page.evaluate("[nonholo.state.table ?? null, nonholo.state.parameters.s]") == [None, 0]
-    again.choose("own")
+    again.page.select_option("#preset", "own")
+    again.settle()
     _same(again, _sent("driven_top"))
 
 
@@ -453,12 +463,17 @@ def _copies_repeat(page: Any, folder: Path) -> None:
     """Copied Python and a copied scenario, which no page in four dimensions has, give the numbers of the page."""
     from nonholo.cli.scenario.files import load_scenario
 
-    is_wide = page.page.evaluate("nonholo.state.kind") == "top4"
+    is_wide, text = page.page.evaluate("nonholo.state.kind") == "top4", {}
+    for kind in ("python", "toml")[: 1 if is_wide else 2]:
+        page.page.click("#share summary")
+        page.page.click(f"#copy-{kind}")
+        text[kind] = page.page.input_value("#dialog-text")
+        page.page.click("#dialog-close")
     names: dict[str, Any] = {}
-    exec(page.copied("python"), names)  # noqa: S102
+    exec(text["python"], names)  # noqa: S102
     _same(page, names["orbit"], poses=1e-14 * is_wide)
     if not is_wide:
-        (folder / "copied.toml").write_text(page.copied("toml"))
+        (folder / "copied.toml").write_text(text["toml"])
         scenario = load_scenario(str(folder / "copied.toml"), []).scenario
         _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
 

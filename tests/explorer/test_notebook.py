@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from waiting import wait_for
 
 import nonholo as nh
 from nonholo.explorer._explore import shown_motion, simulate_state
@@ -175,12 +175,15 @@ def laboratory(tmp_path: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _address(log: Path, server: subprocess.Popen) -> str:
-    said = r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab"
-    wait_for(lambda: server.poll() is not None or re.search(said, log.read_text()))
-    assert server.poll() is None, log.read_text()
-    address = f"http://127.0.0.1:{re.search(said, log.read_text())[1]}"
-    urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
-    return address
+    for _ in range(600):
+        found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab", log.read_text())
+        if found:
+            address = f"http://127.0.0.1:{found[1]}"
+            urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
+            return address
+        assert server.poll() is None, log.read_text()
+        time.sleep(0.1)
+    raise TimeoutError(log.read_text())
 
 
 @pytest.mark.profile("browser", instead="test_state_follows_the_widget")
