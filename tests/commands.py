@@ -34,14 +34,26 @@ def output_of(result: Result) -> str:
     return assert_ends(result, 0).stdout
 
 
+def assert_shows(result: Result, *words: str) -> None:
+    """Find words on the standard output of a command that succeeds, wherever lines end."""
+    shown = " ".join(output_of(result).replace("│", " ").split())
+    for each in words:
+        assert each in shown, shown
+
+
 def json_of(result: Result) -> dict[str, Any]:
     """Return the object that a command prints which succeeds."""
     return json.loads(output_of(result))
 
 
+def scenario_of(load: Callable[..., Any], text: str, *settings: str) -> Any:
+    """Return a scenario, which is written to my.toml, under settings of the command line."""
+    Path("my.toml").write_text(text)
+    return load("my.toml", [parse_setting(setting) for setting in settings]).scenario
+
+
 def problems_of(load: Callable[..., object], text: str, *settings: str) -> list[str]:
     """Return what is wrong with a scenario, which is written to my.toml, under settings of the command line."""
-    Path("my.toml").write_text(text)
     with pytest.raises(ScenarioError) as caught:
-        load("my.toml", [parse_setting(setting) for setting in settings])
+        scenario_of(load, text, *settings)
     return [str(problem) for problem in caught.value.problems]

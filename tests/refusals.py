@@ -29,3 +29,10 @@ def refusals(
         assert not list(tmp_path.iterdir())
 
     return test
+
+
+def assert_refused(subject: Any, words: str, *doors: Callable[[Any], object], kind: Kinds = ValueError) -> None:
+    """Check that each door, a function such as `load_orbit`, refuses a subject, such as a path, in such words."""
+    for door in doors:
+        with pytest.raises(kind, match=words):
+            door(subject)

@@ -1,12 +1,10 @@
 """Every command runs in an empty folder and leaves the caches of this machine as they are."""
 
-import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
+from commands import Command, Figures, json_of
+from typer.testing import CliRunner
 
 from nonholo.cli._app import app
 
@@ -21,18 +19,12 @@ def _empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def nonholo() -> Callable[..., Result]:
+def nonholo() -> Command:
     """Run the command line in this process."""
     return lambda *arguments: CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.fixture
-def figures(nonholo: Callable[..., Result]) -> Callable[..., dict[str, Any]]:
+def figures(nonholo: Command) -> Figures:
     """Run `simulate --json --no-plot` and return what it prints."""
-
-    def run(*arguments: object) -> dict[str, Any]:
-        result = nonholo("simulate", *arguments, "--json", "--no-plot")
-        assert result.exit_code == 0, result.output
-        return json.loads(result.stdout)
-
-    return run
+    return lambda *arguments: json_of(nonholo("simulate", *arguments, "--json", "--no-plot"))

@@ -1,5 +1,6 @@
-"""Every ready example from the command line: run, page, sweep, picture, template; and bodies of a user's own file."""
+"""Every ready example from the command line: run, page, sweep, picture, template; files of a user; data sets."""
 
+import json
 import re
 import sys
 import tomllib
@@ -8,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, assert_ends, json_of, output_of
+from commands import Command, assert_ends, json_of, output_of, scenario_of
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import examples
 from nonholo.cli.scenario.files import load_scenario, parse_setting
+from nonholo.ensembles import DEFINITIONS
 
 NAMES = sorted(name for name in nh.examples.__all__ if name.islower())
 QUICK = ["particle", "heavy_suslov_top"]  # in coordinates, and on a group
@@ -68,9 +70,8 @@ def test_every_template(name: str, nonholo: Command) -> None:
     """What `new` writes has every argument with its meaning, and is the scenario that the bare name runs."""
     text = output_of(nonholo("new", name))
     assert max(map(len, text.splitlines())) <= 120
-    Path("my.toml").write_text(text)
     body = tomllib.loads(text)["body"]
-    named, written = load_scenario(name, []).scenario, load_scenario("my.toml", []).scenario
+    named, written = load_scenario(name, []).scenario, scenario_of(load_scenario, text)
     assert (written.body, written.start, written.run) == (named.body, named.start, named.run)
     assert body.pop("kind") == name
     assert text.count("#") > len(body)
@@ -147,7 +148,7 @@ def test_a_body_of_ones_own(robot: Path, nonholo: Command, monkeypatch: pytest.M
     told = json_of(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0"))
     assert (told["steps"], told["outcome"]) == (8, "successful")
     orbit = nh.load_orbit("c.zarr")
-    system = sys_modules_cart(mass=2.0).system
+    system = sys.modules["cart_of_mine"].cart(mass=2.0).system
     again = nh.simulate(nh.discretize(system, 0.1), configuration=[0.3, 0.0], body_velocity=[0.5, 0.0], steps=8)
     np.testing.assert_array_equal(orbit.configuration, again.configuration)
     output_of(nonholo("explore", "cart", *own, "-o", "page.html", "--no-browser"))
@@ -156,18 +157,13 @@ def test_a_body_of_ones_own(robot: Path, nonholo: Command, monkeypatch: pytest.M
     output_of(nonholo("simulate", "plank", *own, *run, "--set", "body.mass=2.0", "--set", start, "--no-plot"))
 
 
-def sys_modules_cart(**numbers: float) -> Any:
-    """Return what the file makes, as it was imported."""
-    return sys.modules["cart_of_mine"].cart(**numbers)
-
-
 @pytest.mark.profile("routes", instead="test_a_function_in_a_file_is_a_data_set")
 def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     """Members are those of the file's function; the store is resumed with the file, and not without."""
     Path("many.toml").write_text(SWEEP)
     output_of(nonholo("sweep", "many.toml", "--module", robot, "-o", "s.zarr", "--no-plot", "-q"))
     swept = nh.load_sweep("s.zarr").load()
-    member = sys_modules_cart(mass=float(swept["mass"][2]), speed=float(swept["speed"][2]))
+    member = sys.modules["cart_of_mine"].cart(float(swept["mass"][2]), float(swept["speed"][2]))
     start = {"configuration": member.configuration, "body_velocity": member.body_velocity}
     orbit = nh.simulate(nh.discretize(member.system, 0.1), **start, steps=8)
     np.testing.assert_array_equal(swept["final_configuration"][2], orbit.configuration[-1])
@@ -199,3 +195,55 @@ def test_refusals(arguments: tuple[str, ...], told: str, nonholo: Command) -> No
     Path("broken.py").write_text("def cart(:")
     Path("leaving.py").write_text("raise SystemExit(3)")
     assert_ends(nonholo(*arguments), 2, told)
+
+
+def test_every_data_set_is_listed(nonholo: Command) -> None:
+    """The list has each name and what moves."""
+    shown = nonholo("dataset", "--list").stdout
+    assert all(name in shown for name in DEFINITIONS)
+
+
+def _written(nonholo: Command, *arguments: str) -> dict[str, Any]:
+    """Write a data set, return its record, and write the same numbers again by the command of that."""
+    output_of(nonholo("dataset", *arguments, "-o", "first"))
+    record = json.loads(Path("first/metadata.json").read_text())
+    command = record["command"].split()[1:]
+    command[command.index("-o") + 1] = "again"
+    output_of(nonholo(*command))
+    assert json.loads(Path("again/metadata.json").read_text())["fields"] == record["fields"]
+    return record
+
+
+def test_it_writes_what_python_writes(nonholo: Command) -> None:
+    """The command and the function have the same numbers; the command of the record writes them again."""
+    small = ("--orbits", "5", "--steps", "3", "--noise", "0.1", "--split", "0.6/0.2/0.2", "--rng", "2")
+    record = _written(nonholo, "sleigh", *small)
+    nh.dataset("sleigh", "python", orbits=5, steps=3, noise=0.1, split=(0.6, 0.2, 0.2), rng=2)
+    assert json.loads(Path("python/metadata.json").read_text())["fields"] == record["fields"]
+    assert output_of(nonholo("dataset", "sleigh", "-o", "quiet", *small, "-q")) == "quiet\n"
+
+
+def test_a_function_in_a_file_is_a_data_set(nonholo: Command) -> None:
+    """The record names the file; its command writes the same numbers again."""
+    lines = ("from types import SimpleNamespace", "import numpy as np", "import nonholo as nh")
+    lines += ("def blades(speed=nh.Uniform(0.5, 1.0), a=nh.Uniform(0.1, 0.4)):",)
+    lines += ("    start = {'configuration': np.eye(3), 'body_velocity': [0.2, speed, 0.0]}",)
+    lines += ("    return SimpleNamespace(system=nh.ChaplyginSleigh(1.0, 1.0, a), **start)",)
+    Path("own_blades.py").write_text("\n".join(lines))
+    record = _written(nonholo, "blades", "--module", "own_blades.py", "--orbits", "4", "--steps", "3")
+    assert "own_blades.py" in record["command"]
+
+
+def test_errors_are_sentences(nonholo: Command) -> None:
+    """A name, a folder or fractions that are missing or wrong leave with a sentence and code 2."""
+    Path(".cache").mkdir()
+    Path("mine.txt").touch()
+    for arguments, said in {
+        (): "--list",
+        ("sleigh",): "-o FOLDER",
+        ("slegh", "-o", "new"): "'sleigh'",
+        ("sleigh", "-o", "new", "--split", "a/b"): "0.8/0.1/0.1",
+        ("sleigh", "-o", "new", "--module", "none.py"): "path of a Python file",
+        ("sleigh", "-o", ".cache/..", "--orbits", "2"): "must be new",
+    }.items():
+        assert_ends(nonholo("dataset", *arguments), 2, said)

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, assert_ends
+from commands import Command, assert_ends, scenario_of
+from comparisons import assert_same
 from matplotlib.text import Text
 
 import nonholo as nh
@@ -72,8 +73,7 @@ def test_the_motion_is_that_of_python(file: Path, kept: tuple[str, ...], expecte
     assert scenario.system().is_forced == bool(expected)
     orbit = nh.simulate(scenario.discretization(), steps=3, **scenario.options())
     other = nh.simulate(nh.discretize(system, 0.05), restricted_velocity=(0.3, 0.4), steps=3)
-    for name in ("momentum", "configuration", "energy"):
-        np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
+    assert_same(orbit, other, "momentum", "configuration", "energy")
 
 
 def test_a_blade_of_a_scenario_yields(file: Path) -> None:
@@ -86,21 +86,18 @@ def test_a_blade_of_a_scenario_yields(file: Path) -> None:
     forced = _forced(potential=GRAVITY, force=nh.Slip([[0.0, 0.0, 1.0]], 0.1, 0.2))
     other = nh.simulate(nh.discretize(forced, 0.05), body_velocity=(0.3, 0.4, 0.0), steps=9)
     assert orbit.body_velocity[:, 2].any()
-    for name in ("momentum", "configuration", "energy"):
-        np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
+    assert_same(orbit, other, "momentum", "configuration", "energy")
 
 
 def test_the_text_kept_repeats_the_run(file: Path, nonholo: Command) -> None:
     """A store holds the rows of the table, not its path; its scenario alone gives the run again."""
-    assert nonholo("simulate", file, "-o", "a.zarr", "--no-plot", "-q").exit_code == 0
     scenario = load_scenario(str(file), []).scenario
     text = effective_text(scenario)
     assert tomllib.loads(text)["forces"]["table"] == TABLE
-    Path("again.toml").write_text(text)
-    assert load_scenario("again.toml", []).scenario == scenario
-    assert nonholo("simulate", "again.toml", "-o", "b.zarr", "--no-plot", "-q").exit_code == 0
-    first, second = nh.load_orbit("a.zarr"), nh.load_orbit("b.zarr")
-    np.testing.assert_array_equal(first.momentum, second.momentum)
+    assert scenario_of(load_scenario, text) == scenario
+    for name, kept in ((file, "a.zarr"), ("my.toml", "b.zarr")):
+        assert nonholo("simulate", name, "-o", kept, "--no-plot", "-q").exit_code == 0
+    assert_same(nh.load_orbit("a.zarr"), nh.load_orbit("b.zarr"), "momentum")
     assert nonholo("info", "a.zarr").exit_code == 0
     assert nonholo("explore", file, "-o", "page.html", "--no-browser").exit_code == 0
 
@@ -198,8 +195,7 @@ def test_report_says_what_was_read(table: str, file: Path, nonholo: Command) -> 
 def test_forces_of_a_template(kind: str) -> None:
     """The forces that stand as comments in what `nonholo new` writes act on its body."""
     own = re.sub(r"^# (\[forces\]|gravity|friction)", r"\1", built_in()[kind], flags=re.MULTILINE)
-    Path("my.toml").write_text(own)
-    forces: Any = load_scenario("my.toml", []).scenario.system()
+    forces = scenario_of(load_scenario, own).system()
     assert (forces.gravity is not None, forces.friction is not None) == (True, True)
 
 

@@ -1,13 +1,12 @@
 """Every kind of body: its built-in scenario, its store, its refusals."""
 
 import functools
-import json
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import Command, Figures, assert_ends, problems_of
+from commands import Command, Figures, assert_ends, assert_shows, json_of, problems_of, scenario_of
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import SHORT, body_table, own_kinds
@@ -28,9 +27,6 @@ restricted_velocity = [0.5, 0.2]
 time_step = 0.1
 steps = 3
 """
-
-MASS_WITH_FORM = "mass_tensor = [[1, 0, -0.3], [0, 2, 0], [0.3, 0, -4]]"
-
 
 _problems = functools.partial(problems_of, load_scenario)
 
@@ -59,7 +55,7 @@ def test_built_in_scenario(kind: str, figures: Figures, nonholo: Command) -> Non
     assert (told["energy_drift"] < 1e-13) == (kind in EXACT)  # the others oscillate by 1e-5 and more
     for name in ("constraint_residual", "group_residual", "reversal_defect"):
         assert told[name] < 1e-13, name
-    again = json.loads(nonholo("info", "a.zarr", "--json").stdout)
+    again = json_of(nonholo("info", "a.zarr", "--json"))
     assert again["energy_drift"] == told["energy_drift"]
     assert again["body"] == told["body"]
     assert nonholo("plot", "a.zarr").stderr == ""
@@ -79,10 +75,8 @@ def test_template(kind: str, nonholo: Command) -> None:
 
 def test_systems_lists_every_kind(nonholo: Command) -> None:
     """`systems` names each kind and each title."""
-    shown = " ".join(nonholo("systems").stdout.split())
-    for kind, text in built_in().items():
-        assert kind in shown
-        assert tomllib.loads(text)["title"].split()[0] in shown
+    titles = [tomllib.loads(text)["title"] for text in built_in().values()]
+    assert_shows(nonholo("systems"), *built_in(), *(title.split()[0] for title in titles))
 
 
 def test_the_free_body_tumbles(figures: Figures) -> None:
@@ -115,28 +109,23 @@ def test_the_plate_turns_as_it_passes(figures: Figures) -> None:
 
 def test_table_says_what_to_expect_of_the_energy(nonholo: Command) -> None:
     """The row of the energy drift says whether a theorem makes it exact, for runs and for stores."""
-    assert "exact by theorem" in nonholo("simulate", "suslov", "--no-plot", "--steps", 20).stdout
+    assert_shows(nonholo("simulate", "suslov", "--no-plot", "--steps", 20), "exact by theorem")
     other = nonholo("simulate", "veselova", "--no-plot", "--steps", 20)
     for shown in (other, nonholo("info", "runs/veselova-001.zarr")):
-        assert "not exact for this discretization" in " ".join(shown.stdout.split())
+        assert_shows(shown, "not exact for this discretization")
 
 
 def test_group_and_large_matrices_in_the_table(nonholo: Command) -> None:
     """The table names the group; matrices too wide for it are described by their shape."""
-    tensor = np.diag([1.0, 2.0, 3.0, 4.0, 5.0]).tolist()
-    setting = f"body={{kind='rigid_body', mass_tensor={tensor}}}"
-    start = f"start={{restricted_velocity={[0.1] * 10}}}"
-    shown = nonholo("simulate", "rigid_body", "--no-plot", "--steps", 3, "--set", setting, "--set", start).stdout
-    assert "SO(5)" in shown
-    assert "10 x 10" in shown
+    body = f"body={{kind='rigid_body', mass_tensor={np.diag([1.0, 2.0, 3.0, 4.0, 5.0]).tolist()}}}"
+    settings = ("--set", body, "--set", f"start={{restricted_velocity={[0.1] * 10}}}")
+    assert_shows(nonholo("simulate", "rigid_body", "--no-plot", "--steps", 3, *settings), "SO(5)", "10 x 10")
 
 
 def test_own_group_is_read_and_written() -> None:
     """A group given by its basis survives the text that a store keeps, exactly."""
-    Path("my.toml").write_text(OWN)
-    scenario = load_scenario("my.toml", []).scenario
-    system = scenario.body.creation
-    assert system.group == nh.MatrixGroup(tomllib.loads(OWN)["body"]["group"]["basis"])
+    scenario = scenario_of(load_scenario, OWN)
+    assert scenario.body.creation.group == nh.MatrixGroup(tomllib.loads(OWN)["body"]["group"]["basis"])
     assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
 
 
@@ -144,8 +133,8 @@ def test_a_form_makes_the_energy_exact() -> None:
     """With a form beside the basis a mass tensor is taken, and the discretization is that of the theorem."""
     lorentz = "{ basis = [[[0,0,0],[0,0,1],[0,1,0]],[[0,0,1],[0,0,0],[1,0,0]],[[0,1,0],[-1,0,0],[0,0,0]]] }"
     text = OWN.replace(str(HEISENBERG), lorentz.replace(" }", ", form = [[1,0,0],[0,1,0],[0,0,-1]] }"))
-    Path("my.toml").write_text(text.replace("inertia_operator = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]", MASS_WITH_FORM))
-    scenario = load_scenario("my.toml", []).scenario
+    mass = "mass_tensor = [[1, 0, -0.3], [0, 2, 0], [0.3, 0, -4]]"
+    scenario = scenario_of(load_scenario, text.replace("inertia_operator = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]", mass))
     discrete = scenario.discretization()
     assert (discrete.difference, discrete.constraint) == ("matrix", "skew")
     assert discrete.conserves_energy
@@ -155,12 +144,10 @@ def test_a_form_makes_the_energy_exact() -> None:
 
 def test_defaults_are_those_of_the_library() -> None:
     """Without difference and constraint the library chooses, and what it chose is what a store keeps."""
-    Path("my.toml").write_text(OWN)
-    scenario = load_scenario("my.toml", []).scenario
+    scenario = scenario_of(load_scenario, OWN)
     discrete = scenario.discretization()
-    assert (discrete.difference, discrete.constraint) == ("logarithmic", "exponential")
-    kept = scenario.in_force(discrete).run
-    assert (kept.difference, kept.constraint) == ("logarithmic", "exponential")
+    for chosen in (discrete, scenario.in_force(discrete).run):
+        assert (chosen.difference, chosen.constraint) == ("logarithmic", "exponential")
 
 
 def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> None:

@@ -1,5 +1,6 @@
 """`nonholo plot`, every kind of picture; `cite`, `examples` and `paper --list`: what they print, from where."""
 
+import functools
 import re
 import tomllib
 from pathlib import Path
@@ -10,31 +11,21 @@ import pytest
 from commands import Command, assert_ends, words_of
 from matplotlib.figure import Figure
 from PIL import Image
+from plot.runs import run_of, sleigh_run, top_run
 
 import nonholo as nh
 from nonholo.cli.screen.pictures import figure_of, kinds
 from nonholo_paper import entries
 
-
-def _sleigh(**options: Any) -> nh.Orbit:
-    return nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5), body_velocity=(0.3, -1, 0), **options)
-
-
-def _top() -> nh.Orbit:
-    top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-    return nh.simulate(nh.discretize(top, 0.1), body_velocity=(0.4, 0.9, 0.0), steps=20)
-
-
-def _free() -> nh.Orbit:
-    return nh.simulate(nh.discretize(nh.RigidBody(np.diag([1.0, 3.0, 2.0])), 0.1), body_velocity=(0.1, 0, 1), steps=20)
+_sleigh = functools.partial(sleigh_run, (0.1, -1.0, 0.0))
 
 
 def test_every_kind_of_picture() -> None:
     """Each function that draws a run is a kind, named with hyphens, and gives a figure with the title that is asked."""
     functions = {name.replace("_", "-") for name in nh.plot.__all__ if name.islower()}
     assert set(kinds()) == functions - {"animate", "comparison", "convergence", "curvature", "sweep-map"}
-    sleigh = _sleigh(steps=20, events=[nh.cusp])
-    others = {"body-axis-track": _top(), "momentum-sphere": _free()}
+    sleigh, free = _sleigh(steps=200, events=[nh.cusp]), run_of(nh.RigidBody(np.diag([1.0, 3.0, 2.0])))
+    others = {"body-axis-track": top_run((0.4, 0.9, 0.0), steps=20), "momentum-sphere": free}
     for kind in kinds():
         names = {"across": "body_velocity.0", "up": "heading"} if kind == "section" else {}
         figure = figure_of(kind, others.get(kind, sleigh), {"title": "Mine"}, **names)
@@ -92,7 +83,7 @@ def test_what_a_section_needs(nonholo: Command) -> None:
     ended = nonholo("plot", "a.zarr", "--kind", "section", "--x", "heading", "--y", "time")
     assert words_of(assert_ends(ended, 1)).startswith("`section(crossings=...)` must hold crossings of an event")
     with pytest.raises(ValueError, match=r"needs --x and --y like body_velocity.0. Got 'speed' to run across"):
-        figure_of("section", _sleigh(steps=20, events=[nh.cusp]), {}, across="speed", up="time")
+        figure_of("section", _sleigh(steps=200, events=[nh.cusp]), {}, across="speed", up="time")
 
 
 ROOT = Path(__file__).parents[2]

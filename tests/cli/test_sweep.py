@@ -14,16 +14,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, assert_ends, json_of, problems_of
-from ensembles.small import HEED_CTRL_C
+from commands import Command, assert_ends, assert_shows, json_of, problems_of, scenario_of
+from ensembles.faults import HEED_CTRL_C
 from stopping import failing_at
 from waiting import wait_for
 
 import nonholo as nh
-from nonholo.cli.scenario.files import Setting, parse_setting
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
-from nonholo.ensembles import standing_of
-from nonholo.io.blocks import BlockStore
+from nonholo.ensembles import _scheduling, standing_of
 from nonholo.io.places import write_lock
 
 BODY = """
@@ -38,33 +36,27 @@ restricted_velocity = [0.3, -1.0]
 time_step = 0.1
 steps = 20
 """
-GRID = (
-    BODY
-    + """
+GRID = f"""{BODY}
 [design]
 kind = "grid"
 [design.values]
 "body.a" = [0.3, 0.5]
-"start.restricted_velocity[0]" = {from = 0.1, to = 0.4, count = 4}
+"start.restricted_velocity[0]" = {{from = 0.1, to = 0.4, count = 4}}
 [keep]
 reductions = ["limit_angle", "energy_drift"]
 [output]
 color = "heading_turn"
 x = "start.restricted_velocity[0]"
 """
-)
-RANDOM = (
-    BODY
-    + """
+RANDOM = f"""{BODY}
 [design]
 kind = "random"
 members = 12
 rng = 3
 [design.values]
-"body.a" = {uniform = [0.2, 1.0]}
-"start.restricted_velocity" = {direction = 1.0}
+"body.a" = {{uniform = [0.2, 1.0]}}
+"start.restricted_velocity" = {{direction = 1.0}}
 """
-)
 
 
 def _written(text: str) -> str:
@@ -77,14 +69,12 @@ _problems = functools.partial(problems_of, load_sweep_scenario)
 
 def test_the_branch_rule_reaches_the_members() -> None:
     """The scenario's key run.branch is the rule of the task."""
-    loaded = load_sweep_scenario(_written(GRID.replace("steps = 20", 'steps = 20\nbranch = "nearest"')), [])
-    assert loaded.scenario.task().branch == "nearest"
+    scenario = scenario_of(load_sweep_scenario, GRID.replace("steps = 20", 'steps = 20\nbranch = "nearest"'))
+    assert scenario.task().branch == "nearest"
 
 
-def _design(text: str, *settings: str, members: int | None = None) -> nh.Grid | nh.RandomDesign:
-    given = [] if members is None else [Setting(f"--members {members}", "design.members", members)]
-    loaded = load_sweep_scenario(_written(text), given + [parse_setting(setting) for setting in settings])
-    return loaded.scenario.design.design()
+def _design(text: str, *settings: str) -> nh.Grid | nh.RandomDesign:
+    return scenario_of(load_sweep_scenario, text, *settings).design.design()
 
 
 def test_the_former_word_for_random_numbers_is_read() -> None:
@@ -107,9 +97,8 @@ def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
 
 def test_the_table_and_the_picture(nonholo: Command) -> None:
     """The table names members, outcomes, ranges and speed; a picture stands beside the store."""
-    result = assert_ends(nonholo("sweep", _written(GRID), "-o", "study/first.zarr"), 0)
-    for text in ("members", "8", "successful", "(100 %)", "heading_turn", "members/s", "size on disk"):
-        assert text in result.stdout
+    words = ("members", "8", "successful", "(100 %)", "heading_turn", "members/s", "size on disk")
+    assert_shows(nonholo("sweep", _written(GRID), "-o", "study/first.zarr"), *words)
     assert Path("study/first.png").stat().st_size > 5000
 
 
@@ -152,10 +141,10 @@ def test_settings_change_a_design() -> None:
 
 
 def test_members_scale_the_ranges_of_a_grid() -> None:
-    """`--members` multiplies the counts of ranges by one factor; lists stay as they are."""
+    """How many are asked for multiplies the counts of ranges by one factor; lists stay as they are."""
     ranges = GRID.replace("[0.3, 0.5]", "{from = 0.1, to = 1.0, count = 2}")
-    assert list(_design(ranges, members=800).sizes.values()) == [20, 40]
-    assert list(_design(GRID, members=2000).sizes.values()) == [2, 1000]
+    assert list(_design(ranges, "design.members=800").sizes.values()) == [20, 40]
+    assert list(_design(GRID, "design.members=2000").sizes.values()) == [2, 1000]
 
 
 def test_members_of_a_random_design(nonholo: Command) -> None:
@@ -183,17 +172,9 @@ def test_members_of_lists_are_refused() -> None:
     ],
 )
 def test_distributions(given: str, kind: Any) -> None:
-    """Each spelling is the distribution of that name."""
+    """Each spelling is the distribution of that name; a direction has the length of the start that it replaces."""
     design = _design(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
-    assert isinstance(design, nh.RandomDesign)
-    assert design.distributions["a"] == kind
-
-
-def test_sizes_come_from_the_value_that_varies() -> None:
-    """A direction has the length of the start it replaces, a mass tensor the size of the one it replaces."""
-    design = _design(RANDOM)
-    assert isinstance(design, nh.RandomDesign)
-    assert design.distributions["restricted_velocity"] == nh.Direction(2, 1.0)
+    assert design.distributions == {"a": kind, "restricted_velocity": nh.Direction(2, 1.0)}
 
 
 def test_what_varies_may_be_left_out(nonholo: Command) -> None:
@@ -275,16 +256,15 @@ def test_the_stored_scenario_repeats_the_sweep(nonholo: Command) -> None:
 
 def test_effective_text_is_stable() -> None:
     """The text of a scenario is read as that scenario."""
-    scenario = load_sweep_scenario(_written(RANDOM), []).scenario
-    assert load_sweep_scenario(_written(sweep_text(scenario)), []).scenario == scenario
+    scenario = scenario_of(load_sweep_scenario, RANDOM)
+    assert scenario_of(load_sweep_scenario, sweep_text(scenario)) == scenario
 
 
 def test_info_of_a_sweep(nonholo: Command) -> None:
     """`info` tells members, outcomes, ranges, the design and the versions, as a table and as JSON."""
     store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
-    shown = nonholo("info", store).stdout
-    for text in ("ChaplyginSleigh", "Grid, seed 0", "successful", "heading_turn", "members/s", "sha256", "numba"):
-        assert text in shown
+    words = ("ChaplyginSleigh", "Grid, seed 0", "successful", "heading_turn", "members/s", "sha256", "numba")
+    assert_shows(nonholo("info", store), *words)
     told = json_of(nonholo("info", store, "--json"))
     assert told["done"] == told["members"] == 8
     assert told["state"] == "finished"
@@ -311,64 +291,44 @@ def test_failed_members_are_told(nonholo: Command) -> None:
     text = GRID.replace('"body.a" = [0.3, 0.5]', '"body.mass" = [1.0, -1.0]')
     store = json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
     assert json_of(nonholo("info", store, "--json"))["outcomes"] == {"successful": 4, "raised": 4}
-    shown = nonholo("info", store).stdout
-    assert "member 4 raised ValueError" in shown
-    assert "must be positive" in shown
+    assert_shows(nonholo("info", store), "member 4 raised ValueError", "must be positive")
 
 
 @pytest.fixture
 def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
-    """A sweep of 12 members, one a block, that Ctrl-C stopped after some blocks."""
-    from nonholo.ensembles import EnsembleTask, _scheduling
-
-    done, do = [], _scheduling.attempt
+    """A sweep of 12 members, one a block, that Ctrl-C stopped after four blocks, whichever came first."""
+    attempt, attempts = _scheduling.attempt, itertools.count()
 
     def interrupted(*arguments: Any) -> Any:
-        done.append(arguments)
-        if len(done) == 5:
+        if next(attempts) == 4:
             raise KeyboardInterrupt
-        return do(*arguments)
+        return attempt(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(EnsembleTask, "block", property(lambda _: 1))
+        patch.setattr(nh.EnsembleTask, "block", property(lambda _: 1))
         patch.setattr(_scheduling, "attempt", interrupted)
-        result = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
-    assert result.exit_code == 1
-    assert "Stopped at 4 of 12 members" in result.stderr
-    assert "Resume with: nonholo resume s.zarr" in result.stderr
+        ended = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
+    assert_ends(ended, 1, "Stopped at 4 of 12 members", "Resume with: nonholo resume s.zarr")
     return Path("s.zarr")
 
 
 def test_a_stopped_sweep_is_resumed(stopped: Path, nonholo: Command) -> None:
     """`info` says how far it came, how to resume and who writes; the rest gives the bits of a sweep in one piece."""
-    shown = nonholo("info", stopped).stdout
-    assert "4 of 12, 33.3 %" in shown
-    assert "resume with: nonholo resume s.zarr" in shown.replace("\n", "")
+    assert_shows(nonholo("info", stopped), "4 of 12, 33.3 %", "resume with: nonholo resume s.zarr")
     with write_lock(stopped):
-        shown = nonholo("info", stopped).stdout
-        assert f"written by process {os.getpid()} on" in " ".join(shown.split())
-        result = nonholo("resume", stopped)
-    assert result.exit_code == 2
-    assert "is being written by process" in result.stderr
+        assert_shows(nonholo("info", stopped), f"written by process {os.getpid()} on")
+        assert_ends(nonholo("resume", stopped), 2, "is being written by process")
     assert json_of(nonholo("resume", stopped, "--workers", 1, "--json"))["done"] == 12
     whole = json_of(nonholo("sweep", _written(RANDOM), "--json", "--no-plot"))
     assert nh.load_sweep(stopped).equals(nh.load_sweep(whole["store"]))
 
 
-def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Damaged chunks are named even if the disk is full before the last block, whichever that is, is written."""
-    write, written = BlockStore.write, []
-
-    def full(*arguments: Any) -> None:
-        written.append(arguments)
-        if len(written) == 12:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        write(*arguments)
-
+def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command) -> None:
+    """Damaged chunks are named even if the disk is full before some block is written."""
     for chunk in (stopped / "final_time" / "c").iterdir():
         chunk.unlink()
-    monkeypatch.setattr(BlockStore, "write", full)
-    ended = nonholo("resume", stopped, "--scheduler", "synchronous")
+    with failing_at(11, OSError(errno.ENOSPC, "No space left on device")):
+        ended = nonholo("resume", stopped, "--scheduler", "synchronous")
     assert_ends(ended, 1, "No space left on device. The sweep stands at", "of the array final_time. Block")
 
 
@@ -414,6 +374,14 @@ def test_options_that_are_refused(words: tuple[str, ...], told: str, nonholo: Co
     """A bad option, and a command for one motion, end with exit code 2 before there is a store."""
     assert_ends(nonholo(words[0], _written(GRID), *words[1:]), 2, told)
     assert not list(Path().glob("runs/*"))
+
+
+@pytest.mark.parametrize("count", [10**15, 10**10])
+def test_grids_that_fill_the_memory_are_refused(count: int, nonholo: Command) -> None:
+    """A range is not made before it is known to fit, and nothing is left."""
+    text = GRID.replace("count = 4", f"count = {count}")
+    assert_ends(nonholo("sweep", _written(text), "-o", "a.zarr"), 2, "fit into memory")
+    assert not Path("a.zarr").exists()
 
 
 def test_plot_of_a_sweep(nonholo: Command) -> None:

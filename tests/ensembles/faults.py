@@ -1,16 +1,16 @@
-"""Sweeps to be disturbed, and a program that kills their clients, their workers, or all of it at random moments."""
+"""Sweeps to be disturbed, small ones too, and processes that run them."""
 
+import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
-import dask.threaded  # noqa: F401  # loaded before the first fork
 import numpy as np
 import xarray
-from waiting import wait_for
 
 import nonholo as nh
 
@@ -42,52 +42,61 @@ def done(path: Path) -> int:
     return len(list((path / "run" / "blocks").glob("*.json")))
 
 
-def kill_often(name: str, path: Path, victims: list[str]) -> None:
-    """Resume a sweep and kill client, worker or all, again and again; print how often that ended as it has to."""
-    chance = np.random.default_rng(len(victims))
-    ended = 0
-    for victim in victims:
-        before = done(path)
-        client = os.fork()
-        if client == 0:
-            _as_client(name, path)
-        enough = before + chance.integers(1, 20)
-        wait_for(lambda: done(path) >= enough)  # noqa: B023
-        time.sleep(chance.uniform(0.0, 0.1))
-        ended += _killed(client, victim)
-    sys.stdout.write(f"{ended}")
-
-
-def _as_client(name: str, path: Path) -> None:
-    os.setsid()
-    try:
-        go_on(name, path, "processes")
-    except OSError as failure:
-        os._exit(3 if "A worker process was killed" in str(failure) else 1)
-    os._exit(0)
-
-
-def _killed(client: int, victim: str) -> bool:
-    """Kill, and tell whether the client ended as it has to and nothing of it is left."""
-    workers = workers_of(client)
-    if victim == "worker":
-        os.kill(workers[-1], signal.SIGKILL)
-        return os.waitstatus_to_exitcode(os.waitpid(client, 0)[1]) == 3
-    (os.killpg if victim == "all" else os.kill)(client, signal.SIGKILL)
-    status = os.waitstatus_to_exitcode(os.waitpid(client, 0)[1])
-    wait_for(lambda: not any(map(_is_running, workers)))
-    return status == -signal.SIGKILL
-
-
-def workers_of(client: int) -> list[int]:
-    """Return the worker processes of a client."""
-    children = Path(f"/proc/{client}/task/{client}/children").read_text().split()
-    return [int(child) for child in children if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
-
-
-def _is_running(process: int) -> bool:
+def is_running(process: int) -> bool:
     """Tell whether a process runs; one that has ended may wait for its parent to ask."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
     except (FileNotFoundError, ProcessLookupError):
         return False
+
+
+# a small sweep that takes some milliseconds
+DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, rng=1)
+
+
+def simple(block: nh.MemberBlock) -> dict[str, Any]:
+    """Return numbers that depend on the design and on the random numbers of members."""
+    return {"total": block["x"] + block["start"][:, 0], "noise": (("component",), block.random(3))}
+
+
+def dying(block: nh.MemberBlock) -> dict[str, Any]:
+    """Return the same numbers, but kill the worker that has the last member."""
+    if 5 in block.index and multiprocessing.parent_process() is not None:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return simple(block)
+
+
+def swept(path: Path, **options: Any) -> xarray.Dataset:
+    """Run the sweep, in this thread unless stated otherwise."""
+    return nh.sweep(simple, DESIGN, path, **{"scheduler": "synchronous", "block": 2, **options}).load()
+
+
+def resumed(path: Path, **options: Any) -> xarray.Dataset:
+    """Resume the sweep."""
+    return nh.resume(path, task=simple, **{"scheduler": "synchronous", **options}).load()
+
+
+def same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
+    """Compare every bit."""
+    return one.variables.keys() == other.variables.keys() and all(
+        one[name].dims == other[name].dims
+        and one[name].dtype == other[name].dtype
+        and one[name].values.tobytes() == other[name].values.tobytes()
+        for name in one.variables
+    )
+
+
+# a test run in the background ignores Ctrl-C, and so would all that it starts
+HEED_CTRL_C = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "signal.signal(signal.SIGHUP, signal.SIG_DFL)"  # children of a shell or of nohup may ignore them
+)
+
+
+def python(code: str, **options: Any) -> subprocess.Popen[str]:
+    """Start a process that knows the names of this file."""
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    program = f"{HEED_CTRL_C}\nfrom ensembles.faults import *\n{code}"
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    command = [sys.executable, "-W", "error::RuntimeWarning", "-c", program]  # such as that of a damaged store
+    return subprocess.Popen(command, env=environment, **pipes, **options)  # noqa: S603

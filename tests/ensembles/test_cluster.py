@@ -4,7 +4,6 @@ import random
 import re
 import signal
 import socket
-import subprocess
 import sys
 import threading
 import time
@@ -18,8 +17,8 @@ from typing import Any
 import distributed
 import pytest
 import xarray
-from ensembles.cluster import BLOCK, DESIGN, Cluster, begin, cluster, done, environment, slow
-from ensembles.small import same
+from ensembles.cluster import BLOCK, DESIGN, Cluster, begin, cluster, done, slow
+from ensembles.faults import same
 from waiting import wait_for
 
 import nonholo as nh
@@ -28,18 +27,6 @@ from nonholo.ensembles.stores import SweepStore
 
 BLOCKS = DESIGN.members // BLOCK
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md").read_text()
-MODULE = "def task(block):\n    return block['x'] ** 2\n"
-WITHOUT = """
-import sys
-sys.modules["distributed"] = None
-import nonholo as nh
-design = nh.Grid({"x": [1.0, 2.0]})
-print(nh.sweep(lambda block: block["x"], design, "a.zarr").result.values)
-try:
-    nh.sweep(lambda block: block["x"], design, "b.zarr", "tcp://127.0.0.1:1")
-except ValueError as failure:
-    print(failure)
-"""
 
 
 @pytest.fixture(scope="module")
@@ -71,11 +58,6 @@ def _some_blocks(store: Path, chance: random.Random) -> None:
     wait_for(lambda: len(done(store)) >= many)
 
 
-def _worker_of(store: Path) -> int:
-    """Return the process that wrote some block."""
-    return int(done(store)[0].rpartition(":")[2])
-
-
 @pytest.mark.profile("faults", instead="test_functions_without_a_module")
 def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -> None:
     """Two worker processes share the blocks of an ensemble, and write what threads write."""
@@ -100,7 +82,7 @@ def test_functions_without_a_module(running: Cluster, tmp_path: Path) -> None:
 @pytest.mark.profile("faults", instead="test_workers_without_the_store")
 def test_functions_that_workers_lack(running: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A function of a module that only the client has is named, and no worker is harmed."""
-    (tmp_path / "only_here.py").write_text(MODULE)
+    (tmp_path / "only_here.py").write_text("def task(block):\n    return block['x'] ** 2\n")
     monkeypatch.syspath_prepend(tmp_path)
     from only_here import task  # pyright: ignore[reportMissingImports]
 
@@ -150,13 +132,10 @@ def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) ->
 def test_the_page(running: Cluster, tmp_path: Path) -> None:
     """The code of the page on clusters runs, for fewer members: the script on a cluster, and its groups."""
     run, groups = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    for text, ours in (
-        ("10**9", "100"),
-        ("/shared/tops.zarr", str(tmp_path / "a.zarr")),
-        ("tcp://host:8786", running.address),
-    ):
+    ours = {"10**9": "100", "/shared/tops.zarr": str(tmp_path / "a.zarr"), "tcp://host:8786": running.address}
+    for text, own in ours.items():
         assert text in run
-        run = run.replace(text, ours)
+        run = run.replace(text, own)
     names: dict[str, Any] = {"__name__": "__main__"}
     exec(run, names)  # noqa: S102
     assert nh.load_sweep(tmp_path / "a.zarr").sizes["member"] == 100
@@ -185,7 +164,7 @@ def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: x
     with cluster(tmp_path / "cluster", workers=1, nanny=nanny) as made:
         swept = _in_background(made.address, tmp_path / "a.zarr")
         _some_blocks(tmp_path / "a.zarr", random.Random(nanny))  # noqa: S311
-        kill(_worker_of(tmp_path / "a.zarr"), signal.SIGKILL)
+        kill(int(done(tmp_path / "a.zarr")[0].rpartition(":")[2]), signal.SIGKILL)  # the writer of some block
         if not nanny:
             made.add_worker()
         assert same(swept.result(timeout=120), undisturbed)
@@ -205,12 +184,8 @@ def test_killed_clients_go_on(running: Cluster, trial: int, tmp_path: Path, undi
     assert same(nh.resume(store, trust=True), undisturbed)
 
 
-def _kill_scheduler(made: Cluster) -> None:
-    made.scheduler.kill()
-
-
 @pytest.mark.profile("faults", instead="test_nobody_to_work_is_told")
-@pytest.mark.parametrize("strike", [_kill_scheduler, Cluster.kill], ids=["scheduler", "all"])
+@pytest.mark.parametrize("strike", [lambda made: made.scheduler.kill(), Cluster.kill], ids=["scheduler", "all"])
 def test_a_killed_cluster_is_told(
     strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -245,26 +220,18 @@ def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.M
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", made.address)
 
 
-def _printed(code: str, folder: Path) -> str:
-    command = [sys.executable, "-c", code]
-    return subprocess.run(  # noqa: S603
-        command, cwd=folder, env=environment(folder), capture_output=True, text=True, check=True
-    ).stdout
-
-
-@pytest.mark.profile("faults", instead="test_calls_that_need_an_extra")
-def test_a_missing_extra_is_named(tmp_path: Path) -> None:
+def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without distributed threads work, and the address of a cluster is refused with the name of the extra."""
-    first, second = _printed(WITHOUT, tmp_path).splitlines()
-    assert first == "[1. 2.]"
-    assert "Install the extra `cluster`: pip install 'nonholo[cluster]'." in second
-    assert not (tmp_path / "b.zarr").exists()
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ValueError, match=r"Install the extra `cluster`: pip install 'nonholo\[cluster\]'\."):
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", "tcp://127.0.0.1:1")
+    assert not (tmp_path / "a.zarr").exists()
+    assert nh.sweep(lambda block: block["x"], DESIGN, tmp_path / "a.zarr").sizes["member"] == DESIGN.members
 
 
 @pytest.mark.profile("faults", instead="test_functions_without_a_module")
 def test_the_users_client(running: Cluster, undisturbed: xarray.Dataset, tmp_path: Path) -> None:
     """A client may be passed: the result is that of threads, and the client stays open; a closed one is refused."""
-    distributed = pytest.importorskip("distributed")
     with distributed.Client(running.address, set_as_default=False) as client:
         found = nh.sweep(slow, DESIGN, tmp_path / "a.zarr", client, block=BLOCK).load()
         assert found.equals(undisturbed)

@@ -7,7 +7,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 import xarray
@@ -26,11 +25,6 @@ def sleighs(a: Any = nh.Uniform(0.2, 0.5), speed: Any = nh.Normal(0.0, 0.3, size
     """Sleighs of our own."""
     system = nh.ChaplyginSleigh(1.0, 1.0, a)
     return SimpleNamespace(system=system, configuration=np.eye(3), body_velocity=np.append(speed, 0.0))
-
-
-def few(a: Any = nh.Uniform(-1.0, 0.5)) -> SimpleNamespace:  # noqa: B008
-    """Sleighs that are not made for most arguments."""
-    return sleighs(a if a > 0 else [a], np.ones(2))
 
 
 def _written(folder: Path, name: Any = "sleigh", **options: Any) -> tuple[xarray.Dataset, dict[str, Any]]:
@@ -125,40 +119,17 @@ def test_a_function_of_our_own_makes_systems_with_their_starts(tmp_path: Path) -
 
 
 def test_orbits_whose_system_cannot_be_made_are_labeled(tmp_path: Path) -> None:
-    """The record has the first system that there is, also if it is not that of orbit 0."""
+    """The record has the first system that there is, also if it is not that of orbit 0; no command makes it again."""
+
+    def few(a: Any = nh.Uniform(-1.0, 0.5)) -> SimpleNamespace:  # noqa: B008
+        return sleighs(a if a > 0 else [a], np.ones(2))
+
     data, record = _written(tmp_path / "few", few, file_format="zarr")
     first = int(np.argmax(data.a.values > 0))
     assert (data.outcome.values == np.where(data.a > 0, 0, RAISED)).all()
     assert first > 0
     assert record["system"]["parameters"]["a"] == data.a.values[first]
-
-
-@pytest.mark.profile("routes", instead="test_a_function_of_our_own_makes_systems_with_their_starts")
-def test_inputs_of_our_own_system_are_drawn(tmp_path: Path) -> None:
-    """A blade under a random push and torque: each orbit has its own, and the bits of the run that it names."""
-
-    def motors(time: Any, q: Any, v: Any, p: Any) -> Any:
-        push = p["thrust"] @ jnp.stack([jnp.sin(time), jnp.sin(2 * time)])
-        return jnp.stack([push * jnp.cos(q[2]), push * jnp.sin(q[2]), 0.2 * jnp.sin(time)]) - 0.1 * v
-
-    def blade(q: Any, p: Any) -> Any:
-        return jnp.stack([-jnp.sin(q[2]), jnp.cos(q[2]), 0.0 * p["thrust"][0]])[None]
-
-    numbers = {"thrust": np.zeros(2)}
-    kinetic = lambda q, v, p: v @ v / 2 + 0.0 * q[0] * p["thrust"][0]  # noqa: E731
-    blank = nh.LagrangeDAlembert(kinetic, blade, dimension=3, force=motors, parameters=numbers)
-
-    def robot(thrust: Any = nh.Normal(0.0, 0.5, size=2)) -> SimpleNamespace:  # noqa: B008
-        system = blank.with_parameters(thrust=thrust)
-        return SimpleNamespace(system=system, configuration=np.zeros(3), body_velocity=np.zeros(3))
-
-    data, record = _written(tmp_path / "robots", robot, orbits=4, steps=40)
     assert record["command"] == "the Python call nonholo.dataset"
-    assert len(np.unique(data.thrust)) == 8
-    ready = robot(data.thrust.values[2])
-    rest: dict[str, Any] = {"body_velocity": np.zeros(3), "configuration": np.zeros(3)}
-    orbit = nh.simulate(nh.discretize(ready.system, 0.05), **rest, steps=40)
-    assert np.array_equal(data.configuration[2], orbit.configuration)
 
 
 def test_energies_are_those_that_were_drawn(folder: Path) -> None:

@@ -1,8 +1,10 @@
 """Sweeps that are killed, interrupted, out of space or damaged: what is lost is named, the end is that of a whole."""
 
 import errno
+import functools
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,7 +16,8 @@ from typing import Any
 import pytest
 from damage import DAMAGE, damage, swap
 from ensembles import faults
-from ensembles.small import python, resumed, same, swept
+from ensembles.faults import python, resumed, same, swept
+from refusals import assert_refused
 from stopping import stopped_at, stopped_in
 from waiting import wait_for
 
@@ -23,35 +26,36 @@ from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores import open_store
 from nonholo.io.blocks import BlockStore
 
-VICTIMS = ["worker", "all", "client"]
-
 
 def _writers(path: Path) -> set[int]:
     """Return the processes that have written blocks."""
     return {int(mark.writer.partition(":")[2]) for _, mark in open_store(path).marks()}
 
 
-def _printed(code: str) -> str:
-    process = python(code)
-    told, complaint = process.communicate(timeout=300)
-    assert process.returncode == 0, complaint
-    return told
+@pytest.mark.profile("faults", instead="test_interruption_after_each_block")
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
+def test_killed_client_goes_on(tmp_path: Path) -> None:
+    """Workers of a killed client end with it; its sweep, resumed, has the same bits and leaves no rubbish."""
+    path, (task, design, block) = tmp_path / "killed.zarr", faults.SWEEPS["noisy"]
+    with python(f"go_on('noisy', Path({str(path)!r}), 'processes')") as client:
+        wait_for(lambda: faults.done(path) > 3 and len(_writers(path)) == 2, seconds=400.0)  # a busy machine
+        client.kill()
+    wait_for(lambda: not any(map(faults.is_running, _writers(path))))
+    assert faults.done(path) < design.members // block
+    assert standing_of(path).owner is None
+    whole = nh.sweep(task, design, tmp_path / "whole.zarr", block=design.members).load()
+    assert same(nh.resume(path, task=task).load(), whole)
+    assert not list(path.rglob("*.partial"))
 
 
 @pytest.mark.profile("faults", instead="test_interruption_after_each_block")
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
-def test_killed_processes_go_on(tmp_path: Path) -> None:
-    """Killed at random moments, and resumed, a sweep in processes is the undisturbed one and leaves no rubbish."""
-    path = tmp_path / "killed.zarr"
-    ended = int(_printed(f"kill_often('noisy', Path({str(path)!r}), {VICTIMS})"))
-    task, design, block = faults.SWEEPS["noisy"]
-    blocks = -(-design.members // block)
-    assert ended == len(VICTIMS)
-    assert 0 < faults.done(path) < blocks, "the last kill has to come before the end: the sweep has to be longer"
-    found = nh.resume(path, task=task).load()
-    assert same(found, nh.sweep(task, design, tmp_path / "whole.zarr", block=design.members).load())
-    assert not list(path.rglob("*.partial"))
-    assert standing_of(path).owner is None
+def test_killed_worker_is_told(tmp_path: Path) -> None:
+    """A worker that is killed ends the sweep with an error in words, and what was done is kept."""
+    with pytest.raises(OSError, match="A worker process was killed"):
+        nh.sweep(faults.dying, faults.DESIGN, tmp_path / "run.zarr", "processes", block=1, workers=2)
+    assert standing_of(tmp_path / "run.zarr").owner is None
+    found = nh.resume(tmp_path / "run.zarr", task=faults.dying, scheduler="synchronous").load()
+    assert same(found, swept(tmp_path / "whole.zarr"))
 
 
 @pytest.mark.profile("faults", instead="test_interruption_after_each_block")
@@ -101,8 +105,7 @@ def test_end_between_the_last_two_writes(tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     with stopped_in("nonholo.io.blocks.consolidate", match="Stopped at 6 of 6"):
         swept(path)
-    with pytest.raises(ValueError, match="must be a finished sweep"):
-        nh.load_sweep(path)
+    assert_refused(path, "must be a finished sweep", nh.load_sweep)
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
     assert same(nh.load_sweep(path), swept(tmp_path / "other.zarr"))
 
@@ -115,30 +118,22 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path) -> None:
     with stopped_at(2, full, r"No space left.*of 6 members.*Free space, then call.*run\.zarr") as caught:
         swept(path, scheduler=scheduler)
     assert caught.value.errno == errno.ENOSPC
-    with pytest.raises(ValueError, match="must be a finished sweep"):
-        nh.load_sweep(path)
+    assert_refused(path, "must be a finished sweep", nh.load_sweep)
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
-@pytest.mark.profile("faults", instead="test_second_process_is_refused")
-def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """While one process writes a store, another one is refused, and told who writes it."""
-    path, told = tmp_path / "run.zarr", []
-    write = BlockStore.write
+def test_second_writer_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While a sweep writes a store, another one is refused, and told which process writes it."""
+    path, write = tmp_path / "run.zarr", BlockStore.write
 
-    def meanwhile(self: BlockStore, block: int, *rest: Any) -> None:
-        if block == 1:
-            told.append(standing_of(path).owner)
-            other = python(f"nh.resume({str(path)!r}, task=noisy)")
-            told.append(other.communicate(timeout=100)[1].splitlines()[-1])
-        write(self, block, *rest)
+    def meanwhile(self: BlockStore, *rest: Any) -> None:
+        owner = standing_of(path).owner
+        assert owner.startswith(f"process {os.getpid()} on ")
+        assert_refused(path, f"is being written by {re.escape(owner)}", resumed, kind=BlockingIOError)
+        write(self, *rest)
 
     monkeypatch.setattr(BlockStore, "write", meanwhile)
-    task, design, _ = faults.SWEEPS["noisy"]
-    nh.sweep(task, design, path, "synchronous", block=1200)
-    assert told[0].startswith(f"process {os.getpid()} on ")
-    assert told[1].startswith("BlockingIOError")
-    assert f"is being written by {told[0]}" in told[1]
+    swept(path)
     assert standing_of(path).finished
 
 
@@ -171,8 +166,7 @@ def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_pat
     whole = swept(path)
     damage(path / array / ARRAYS[array], how)
     named = f"chunk {ARRAYS[array]} of the array {array}"
-    with pytest.raises(ValueError, match=named):
-        nh.load_sweep(path)
+    assert_refused(path, named, nh.load_sweep)
     with pytest.warns(RuntimeWarning, match=f"{named}. Block 1 is computed again"):
         assert same(resumed(path), whole)
     assert same(nh.load_sweep(path), whole)
@@ -224,8 +218,7 @@ def test_lost_axis_is_refused(axis: str, how: str, tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     swept(path)
     damage(path / axis / ("c/0" if axis == "x" else "c/0/0"), how)
-    with pytest.raises(ValueError, match=f"hold the axis {axis}.*Run the sweep again"):
-        resumed(path)
+    assert_refused(path, f"hold the axis {axis}.*Run the sweep again", resumed)
 
 
 @pytest.mark.profile("faults", keep=["*-cut"])
@@ -238,10 +231,8 @@ def test_lost_metadata_are_refused(place: str, match: str, how: str, tmp_path: P
     path = tmp_path / "run.zarr"
     swept(path)
     damage(path / place / "zarr.json", how)
-    with pytest.raises(ValueError, match=match):
-        resumed(path)
-    with pytest.raises(ValueError, match=match if place else "must be a store of a sweep"):
-        swept(path, resume=True)
+    assert_refused(path, match, resumed)
+    assert_refused(path, match if place else "must be a store of a sweep", functools.partial(swept, resume=True))
 
 
 @pytest.mark.parametrize(
@@ -253,8 +244,7 @@ def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str,
     path = tmp_path / "run.zarr"
     whole = swept(path)
     swap(path, one, other)
-    with pytest.raises(ValueError, match="of another place or store in block"):
-        nh.load_sweep(path)
+    assert_refused(path, "of another place or store in block", nh.load_sweep)
     with pytest.warns(RuntimeWarning, match="of another place or store in block"):
         assert same(resumed(path), whole)
     assert same(nh.load_sweep(path), whole)
@@ -265,17 +255,14 @@ def test_metadata_of_another_array_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     swept(path)
     swap(path, "total/zarr.json", "outcome/zarr.json")
-    for opened in (nh.load_sweep, resumed):
-        with pytest.raises(ValueError, match=r"hold the array \w+ of its description"):
-            opened(path)
+    assert_refused(path, r"hold the array \w+ of its description", nh.load_sweep, resumed)
     swap(path, "total/zarr.json", "outcome/zarr.json")
     for name in ("outcome", "x"):
         for told in ("a text", {"scale_factor": 2.0}):
             file = path / name / "zarr.json"
             sound = file.read_text()
             file.write_text(json.dumps(json.loads(sound) | {"attributes": told}))
-            with pytest.raises(ValueError, match=f"hold the (array|axis) {name}"):
-                nh.load_sweep(path)
+            assert_refused(path, f"hold the (array|axis) {name}", nh.load_sweep)
             file.write_text(sound)
 
 
@@ -289,8 +276,7 @@ def test_consolidated_metadata_are_not_believed(name: str, tmp_path: Path) -> No
     (path / "zarr.json").write_text(json.dumps(document))
     assert same(nh.load_sweep(path), whole)
     (path / "run" / "zarr.json").write_text("{")
-    with pytest.raises(ValueError, match="hold sound metadata"):
-        nh.load_sweep(path)
+    assert_refused(path, "hold sound metadata", nh.load_sweep)
 
 
 def test_an_axis_of_other_values_is_refused(tmp_path: Path) -> None:
@@ -299,8 +285,7 @@ def test_an_axis_of_other_values_is_refused(tmp_path: Path) -> None:
     nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 2.0]}), path)
     nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 3.0]}), other)
     (path / "x" / "c" / "0").write_bytes((other / "x" / "c" / "0").read_bytes())
-    with pytest.raises(ValueError, match="hold the axis x of its design"):
-        nh.load_sweep(path)
+    assert_refused(path, "hold the axis x of its design", nh.load_sweep)
 
 
 def test_a_mark_is_data(tmp_path: Path) -> None:
@@ -312,8 +297,7 @@ def test_a_mark_is_data(tmp_path: Path) -> None:
     for text in (others, '{"members": 1}', "[" * 100_000, "7"):
         (path / "run" / "blocks" / "0.json").write_text(f"{zlib.crc32(text.encode()):08x} {text}")
         assert standing_of(path).done == 4
-        with pytest.raises(ValueError, match=r"mark 0\.json is damaged"):
-            nh.load_sweep(path)
+        assert_refused(path, r"mark 0\.json is damaged", nh.load_sweep)
 
     def failing(block: nh.MemberBlock) -> Any:
         if 1.5 in block["x"]:

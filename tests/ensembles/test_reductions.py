@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray
 from bodies import GENERAL
+from comparisons import derivatives
 
 import nonholo as nh
 from nonholo.discrete import step_jacobians
@@ -52,11 +53,6 @@ def test_final_state_is_the_last_one(discrete: nh.Discretization, every: int | N
             assert wanted is not None
             assert np.abs(found[f"final_{name}"][member] - wanted[-1]).max() < 1e-13, name
     assert found["steps_done"].tolist() == [60] * 3
-
-
-def test_final_state_without_poses() -> None:
-    """Without poses there is no final one."""
-    assert "final_pose" not in _reduced("final_state", _batch(TOP, reconstruct=False))
 
 
 @pytest.mark.parametrize("every", [None, 1])
@@ -140,7 +136,7 @@ def test_branch_counts_are_those_over_the_first_momentum() -> None:
 )
 def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, starts: np.ndarray) -> None:
     """The exponent is the largest growth of small differences of first momenta over all steps."""
-    steps, h = 12, 1e-6
+    steps = 12
     batch = nh.ensemble(discrete, restricted_velocity=starts, steps=steps, save_every=1)
     found = _reduced("lyapunov", batch)["lyapunov"]
 
@@ -148,10 +144,18 @@ def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, star
         return nh.simulate(discrete, momentum=momentum, steps=steps, reconstruct=False).restricted_momentum[-1]
 
     for member, exponent in enumerate(found):
-        first = batch.restricted_momentum[member, 0]
-        slopes = [(last(first + h * e) - last(first - h * e)) / (2 * h) for e in np.eye(len(first))]
+        slopes = derivatives(last, batch.restricted_momentum[member, 0], 1e-3)
         wanted = np.log(np.linalg.norm(slopes, 2)) / (steps * discrete.time_step)
         assert abs(exponent - wanted) < 1e-8  # differences: 1e-10 of the slopes, divided by a time of about one
+
+
+def _assert_tangents(batch: nh.Ensemble) -> None:
+    """Compare derivatives of steps in closed form with those by the definition."""
+    found = tangents(batch.members, batch.reduced_momentum, batch.cayley)
+    for member, done in enumerate(batch.steps_done):
+        assert done > 0
+        wanted = step_jacobians(batch.members.of(member), batch.orbit(member).displacement)
+        assert np.abs(found[member, : done + 1] - wanted).max() < 1e-12 * np.abs(wanted).max()
 
 
 @pytest.mark.profile("routes", keep=["*-top"])
@@ -161,11 +165,7 @@ def test_tangents_are_derivatives_of_steps(discrete: nh.Discretization, size: fl
     """A derivative in closed form is that by the definition: at rest, near it and far, whatever the time step."""
     own = {"time_step": np.array([1e-3, 0.1, 0.5])}
     batch = nh.ensemble(discrete, restricted_velocity=size * STARTS, steps=20, save_every=1, parameters=own)
-    found = tangents(batch.members, batch.reduced_momentum, batch.cayley)
-    for member, done in enumerate(batch.steps_done):
-        assert done > 0
-        wanted = step_jacobians(batch.members.of(member), batch.orbit(member).displacement)
-        assert np.abs(found[member, : done + 1] - wanted).max() < 1e-12 * np.abs(wanted).max()
+    _assert_tangents(batch)
 
 
 def test_lyapunov_of_members_that_end_early() -> None:
@@ -200,10 +200,12 @@ def test_reductions_without_a_meaning_are_refused(name: str, discrete: nh.Discre
         REDUCTIONS[name].function(other)
 
 
-def test_limit_angle_without_poses_is_refused() -> None:
-    """The angle of a top needs poses, that of a sleigh does not."""
+def test_without_poses() -> None:
+    """There is no final one, nor the angle of a top; that of a sleigh is."""
+    bare = _batch(TOP, reconstruct=False)
+    assert "final_pose" not in _reduced("final_state", bare)
     with pytest.raises(ValueError, match="must have poses"):
-        _reduced("limit_angle", _batch(TOP, reconstruct=False))
+        _reduced("limit_angle", bare)
     with_poses, without = (_batch(SLEIGH, reconstruct=posed) for posed in (True, False))
     assert np.array_equal(*(_reduced("limit_angle", batch)["heading_turn"] for batch in (with_poses, without)))
 
@@ -222,10 +224,7 @@ def test_bodies_by_matrices_are_reduced_as_their_families(family: nh.Discretizat
     for name in ("limit_angle", *(["turning_deviation"] if family is SLEIGH else [])):
         for quantity, wanted in _reduced(name, of_family).items():
             np.testing.assert_allclose(_reduced(name, by_matrices)[quantity], wanted, 1e-11, err_msg=quantity)
-    found = tangents(by_matrices.members, by_matrices.reduced_momentum, by_matrices.cayley)
-    for member in range(2):
-        wanted = step_jacobians(by_matrices.members.of(member), by_matrices.orbit(member).displacement)
-        assert np.abs(found[member] - wanted).max() < 1e-12 * np.abs(wanted).max()
+    _assert_tangents(by_matrices)
 
 
 START = 1e-8
@@ -277,22 +276,11 @@ def test_turn_of_each_step() -> None:
     assert np.ptp(orbit.heading) > 3
 
 
-def test_balanced_sleigh_has_no_deviation(tmp_path: Path) -> None:
-    """A balanced sleigh turns forever, so its deviation is not defined."""
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 0.1)
-    options = {"steps": 20, "restricted_velocity": (0.5, -1.0), "reductions": "turning_deviation"}
-    found = nh.sweep(nh.EnsembleTask(discrete, **options), nh.Grid({"a": [0.0, 1.0]}), tmp_path / "s.zarr")
-    assert np.isnan(found["turning_deviation"].values).tolist() == [True, False]
-
-
-def test_lost_sleighs_are_sound_chunks(tmp_path: Path) -> None:
-    """A block of members that have no number is on disk like any other: the result is loaded, and nothing repaired."""
-    task = nh.EnsembleTask(
-        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 6.0),
-        steps=10,
-        restricted_velocity=(START, -1.0),
-        reductions=["turning_deviation", "energy_drift"],
-    )
-    nh.sweep(task, nh.Grid({"time_step": [0.5, 6.0]}), tmp_path / "lost.zarr", block=1)
-    assert np.isnan(nh.load_sweep(tmp_path / "lost.zarr")["turning_deviation"].values).tolist() == [False, True]
-    assert nh.load_sweep(tmp_path / "lost.zarr").equals(nh.resume(tmp_path / "lost.zarr"))
+@pytest.mark.parametrize("design", [{"a": [1.0, 0.0]}, {"time_step": [0.5, 6.0]}], ids=["balanced", "lost"])
+def test_sleighs_without_a_deviation(design: dict[str, list[float]], tmp_path: Path) -> None:
+    """A balanced sleigh turns forever, so it has none; a block without a number is on disk like any other."""
+    discrete, store = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 0.1), tmp_path / "s.zarr"
+    options = {"restricted_velocity": (START, -1.0), "reductions": ["turning_deviation", "energy_drift"]}
+    nh.sweep(nh.EnsembleTask(discrete, steps=10, **options), nh.Grid(design), store, block=1)
+    assert np.isnan(nh.load_sweep(store)["turning_deviation"].values).tolist() == [False, True]
+    assert nh.load_sweep(store).equals(nh.resume(store))

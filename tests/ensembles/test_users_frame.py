@@ -139,7 +139,7 @@ def test_last_poses_of_sweeps(name: str, axes: dict[str, Any], tmp_path: Path) -
         assert _close(_matrices({**told, "energy": 0.0}, system.group), g)
 
 
-@pytest.mark.profile("routes", keep=["sleigh", "askew"])
+@pytest.mark.profile("routes", keep=["sleigh", "askew", "sleigh in space"])
 @pytest.mark.parametrize("name", ["about e2", "about -e3", "askew", "sleigh", "sleigh in space"])
 def test_tables(name: str, tmp_path: Path) -> None:
     """CSV from an orbit and from a store has the numbers of the dataset."""

@@ -159,15 +159,18 @@ def test_nasty_flows(value: float) -> None:
     np.testing.assert_array_equal(Module("flow4", 50).flow(f, node, times, 1.0), here)
 
 
+PLAIN: dict[str, kernels.AnyBody] = {
+    "top": kernels.suslov_body(np.diag([1.0, 2.0]), np.array([0.3, 0.1])),
+    "sleigh": kernels.SleighBody(1, 1, 0.5),
+    "top4": kernels.secular_top(np.array([1.0, 2.0, 3.0]), np.array([0.3, 0.1, 0.0])),
+}
+
+
 @pytest.mark.parametrize("momentum", [(0.0, 0.0), (np.inf, 1.0), (np.nan, 0.0), (1e300, -1e300), (1e-320, 0.3)])
-@pytest.mark.parametrize("kind", ["top", "sleigh", "top4"])
+@pytest.mark.parametrize("kind", PLAIN)
 def test_nasty_starts(kind: str, momentum: tuple[float, float]) -> None:
     """What is not finite, huge or denormal ends there as it does here."""
-    body: kernels.AnyBody = kernels.SleighBody(1, 1, 0.5)
-    if kind == "top":
-        body = kernels.suslov_body(np.diag([1.0, 2.0]), np.array([0.3, 0.1]))
-    if kind == "top4":
-        body = kernels.secular_top(np.array([1.0, 2.0, 3.0]), np.array([0.3, 0.1, 0.0]))
+    body = PLAIN[kind]
     rank, _, size = kernels.sizes(body)
     start, pose = np.resize(momentum, rank), np.eye(4)[0] if size == 4 else np.eye(4).ravel()
     _outcome(Module(kind, _STEPS), body, _flat(body), start, pose)

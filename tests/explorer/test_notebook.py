@@ -1,6 +1,5 @@
 """The live page and pictures in notebooks: what sliders say in Python, notebooks that run, a real JupyterLab."""
 
-import functools
 import math
 import os
 import re
@@ -52,11 +51,7 @@ def test_state_follows_the_widget() -> None:
     assert page.orbit().time[-1] == 3.5
 
 
-@functools.cache
-def _first_state() -> dict[str, Any]:
-    return shown_motion("explore(value=...)", SLEIGH).data["state"]
-
-
+FIRST_STATE: dict[str, Any] = shown_motion("explore(value=...)", SLEIGH).data["state"]
 ODD: dict[str, Any] = {
     "nothing": {},
     "a list": [],
@@ -92,7 +87,7 @@ ODD: dict[str, Any] = {
 def test_odd_states_are_refused(odd: str) -> None:
     """A frame may say anything: it is data, and refused in a sentence by the rules of the page itself."""
     change = ODD[odd]
-    state = {**_first_state(), **change} if isinstance(change, dict) and change else change
+    state = {**FIRST_STATE, **change} if isinstance(change, dict) and change else change
     with pytest.raises(ValueError, match=r"^`[^`]+` must .+ Got .+\."):
         simulate_state("Page.orbit()", state)
 
@@ -100,7 +95,7 @@ def test_odd_states_are_refused(odd: str) -> None:
 @pytest.mark.parametrize("missing", ["kind", "parameters", "momentum", "pose", "time_step", "steps"])
 def test_states_with_gaps_are_refused(missing: str) -> None:
     """Every entry has to be there."""
-    state = {name: value for name, value in _first_state().items() if name != missing}
+    state = {name: value for name, value in FIRST_STATE.items() if name != missing}
     with pytest.raises(ValueError, match=f"Got {missing}: Field required"):
         simulate_state("Page.orbit()", state)
 

@@ -22,7 +22,6 @@ from nonholo.lagrange_dalembert import CoordinateOrbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
-LARGEST = 700_000
 
 
 def _data(text: str) -> dict[str, Any]:
@@ -31,8 +30,14 @@ def _data(text: str) -> dict[str, Any]:
     return json.loads(found[1])
 
 
-def _run(body: Any, velocity: tuple[float, ...]) -> nh.Orbit:
-    return nh.simulate(nh.discretize(body, 0.1), restricted_velocity=velocity, steps=5)
+def _numbers(packed: dict[str, str], *names: str) -> list[np.ndarray]:
+    """Return arrays of numbers that a page holds as texts; frames of four vectors in space."""
+    arrays = {name: np.frombuffer(base64.b64decode(packed[name])) for name in names}
+    return [x.reshape(-1, 4, 3) if name == "frames" else x for name, x in arrays.items()]
+
+
+def _run(body: Any, velocity: tuple[float, ...], **options: Any) -> nh.Orbit:
+    return nh.simulate(nh.discretize(body, 0.1), **{"restricted_velocity": velocity, "steps": 5, **options})
 
 
 def test_data_of_a_page() -> None:
@@ -103,8 +108,8 @@ def test_data_of_a_table() -> None:
         data = _data(page.text)
         assert data["state"]["table"] == data["table"]["name"]
         assert data["state"]["parameters"]["s"] == 1.0
-        packed = np.frombuffer(base64.b64decode(data["table"]["rows"])).reshape(-1, 3)
-        np.testing.assert_array_equal(packed, rows[first:])
+        (packed,) = _numbers(data["table"], "rows")
+        np.testing.assert_array_equal(packed.reshape(-1, 3), rows[first:])
         np.testing.assert_allclose(page.orbit().reduced_momentum, orbit.reduced_momentum[first:], atol=1e-13)
     for change in ({"steps": 10**12}, {"steps": "x"}, {"parameters": {**data["state"]["parameters"], "s": "x"}}):
         with pytest.raises(ValueError, match="a state that the page can show"):
@@ -139,30 +144,26 @@ def test_what_a_page_replays_where_its_kernel_may_not_run() -> None:
     for live, steps in ((orbit, 500), (TOP, 400)):
         page = nh.explore(live)
         recorded = _data(page.text)["recorded"]
-        time, frames = (np.frombuffer(base64.b64decode(recorded[name])) for name in ("time", "frames"))
-        assert len(time) == len(frames) / 12 == 100
+        time, frames = _numbers(recorded, "time", "frames")
+        assert len(time) == len(frames) == 100
         states = np.rint(time / 0.1).astype(int)
         assert (states[0], states[-1], recorded["outcome"]) == (0, steps, 0)
         poses = page.orbit().configuration[states]
-        np.testing.assert_array_equal(frames.reshape(-1, 4, 3)[:, 1:], poses.transpose(0, 2, 1))
+        np.testing.assert_array_equal(frames[:, 1:], poses.transpose(0, 2, 1))
 
 
 def test_size_and_policy() -> None:
     """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
     for body in (nh.SuslovTop.arrowhead(np.ones(4), np.ones(3) / 4), TOP):
         text = nh.explore(body).text
-        assert len(text) - len(json.dumps(_data(text)["recorded"])) <= LARGEST
+        assert len(text) - len(json.dumps(_data(text)["recorded"])) <= 700_000
     assert text.isascii()
     assert "three.js authors\n\nPermission is hereby granted" in text
-    script, style = (
-        re.findall(r"<script>(.*?)</script>", text, re.DOTALL),
-        re.findall(r"<style>(.*?)</style>", text, re.DOTALL),
-    )
+    script, style = (re.findall(f"<{tag}>(.*?)</{tag}>", text, re.DOTALL) for tag in ("script", "style"))
     (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', text)
     for (own,) in (script, style):
-        assert f"'sha256-{base64.b64encode(hashlib.sha256(own.encode()).digest()).decode()}'" in policy.replace(
-            "&#39;", "'"
-        )
+        digest = base64.b64encode(hashlib.sha256(own.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in policy.replace("&#39;", "'")
     assert policy.startswith("default-src 'none'")
     assert "unsafe-inline" not in policy
     assert "'unsafe-eval'" not in policy
@@ -172,7 +173,7 @@ def test_size_and_policy() -> None:
 @pytest.mark.parametrize(
     "orbit",
     [
-        lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(5)), 0.1), restricted_velocity=(1, 0.5, 0, 0), steps=9),
+        lambda: _run(nh.SuslovTop(np.eye(5)), (1, 0.5, 0, 0)),
         lambda: nh.flow(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(0, 1, 10)),
         lambda: nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=9),
         lambda: _run(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), (0.5, 0.2)),
@@ -188,10 +189,10 @@ def test_replays(orbit: Any) -> None:
     data = _data(text)
     assert (data["kind"], data["kernels"]) == ("replay", {})
     assert "A replay of numbers from Python" in text
-    replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("time", "energy", "frames")}
-    np.testing.assert_array_equal(replay["time"], motion.time)
-    np.testing.assert_array_equal(replay["energy"], motion.energy)
-    frames, g, group = replay["frames"].reshape(-1, 4, 3), motion.configuration, motion.system.group
+    time, energy, frames = _numbers(data["replay"], "time", "energy", "frames")
+    np.testing.assert_array_equal(time, motion.time)
+    np.testing.assert_array_equal(energy, motion.energy)
+    g, group = motion.configuration, motion.system.group
     if group == nh.SE(2):
         np.testing.assert_array_equal(frames[:, 1, :2], g[:, :2, 0])
         return
@@ -213,16 +214,16 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     orbit = _in_coordinates(("a", "y", "x"), "a")
     monkeypatch.setattr(CoordinateOrbit, "restricted_momentum", orbit.momentum)
     data = _data(nh.explore(orbit).text)
-    replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("energy", "frames", "momentum")}
-    frames, a = replay["frames"].reshape(-1, 4, 3), orbit.configuration[:, 0]
+    energy, frames, momentum = _numbers(data["replay"], "energy", "frames", "momentum")
+    a = orbit.configuration[:, 0]
     np.testing.assert_array_equal(frames[:, 0], orbit.configuration[:, [2, 1]] @ np.eye(2, 3))
     np.testing.assert_array_equal(frames[:, 1], np.stack([np.cos(a), np.sin(a), 0 * a], axis=1))
-    np.testing.assert_array_equal(replay["momentum"].reshape(-1, 2), orbit.momentum[:, :2])
-    np.testing.assert_array_equal(replay["energy"], orbit.energy)
+    np.testing.assert_array_equal(momentum.reshape(-1, 2), orbit.momentum[:, :2])
+    np.testing.assert_array_equal(energy, orbit.energy)
     assert data["momenta"] == ["p(a)", "p(y)"]
     monkeypatch.setattr(CoordinateOrbit, "work", orbit.time**2)
     text = nh.explore(orbit.chosen(slice(None))).text  # which remembers nothing
-    shown = np.frombuffer(base64.b64decode(_data(text)["replay"]["energy"]))
+    (shown,) = _numbers(_data(text)["replay"], "energy")
     np.testing.assert_allclose(shown / shown[0] - 1, (orbit.time - orbit.time**2) / 2, atol=1e-15)
     assert "less the work of forces" in text
 
@@ -250,13 +251,12 @@ def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
         return
     assert drawn["sizes"] == drawing
     corners = np.frombuffer(base64.b64decode(drawn["corners"]), "<f4").reshape(drawn["rows"], -1, 2)
-    frames = np.frombuffer(base64.b64decode(replay["frames"])).reshape(-1, 4, 3)
-    system = motion.system
+    (frames,), system = _numbers(replay, "frames"), motion.system
     if motion.coordinates:
         expected = [np.concatenate(system.parts(q)) for q in motion.configuration]
         np.testing.assert_array_equal(replay["names"], motion.coordinates)
-        places = np.frombuffer(base64.b64decode(replay["coordinates"])).reshape(motion.configuration.shape)
-        np.testing.assert_array_equal(places, motion.configuration)
+        (places,) = _numbers(replay, "coordinates")
+        np.testing.assert_array_equal(places, motion.configuration.ravel())
     else:
         expected = [np.concatenate(plate(system))] * 4
         np.testing.assert_array_equal(frames[:, 0, :2], (motion.configuration @ blade_axes(system.inside))[:, :2, 2])
@@ -268,7 +268,7 @@ def test_replays_without_a_place(names: tuple[str, ...]) -> None:
     """Where x and y are no coordinates the first two are the place, and one beside its rate."""
     orbit = _in_coordinates(names)
     replay = _data(nh.explore(orbit).text)["replay"]
-    frames = np.frombuffer(base64.b64decode(replay["frames"])).reshape(-1, 4, 3)
+    (frames,) = _numbers(replay, "frames")
     np.testing.assert_array_equal(frames[:, 0, :2], np.hstack([orbit.configuration, orbit.body_velocity])[:, :2])
     assert replay["drawing"] == {"ball": True}
 
@@ -277,7 +277,7 @@ def test_long_orbits_are_thinned() -> None:
     """A replay of many states has some of them, the first and the last too, and says how many."""
     orbit = nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=10_000)
     text = nh.explore(orbit).text
-    time = np.frombuffer(base64.b64decode(_data(text)["replay"]["time"]))
+    (time,) = _numbers(_data(text)["replay"], "time")
     assert (len(time), time[0], time[-1]) == (4000, 0.0, orbit.time[-1])
     assert "4,000 of 10,001 saved states" in text
 
@@ -288,10 +288,7 @@ test_refusals = refusals(
     (lambda: nh.discretize(nh.RigidBody(np.eye(3)), 0.1), "be a top with n = 3"),
     (lambda: nh.SuslovTop(np.eye(5)), "be a top with n = 3 or 4"),
     (lambda: nh.Forced(nh.SuslovTop(np.eye(4)), force=nh.Friction(np.ones(6))), "be a top with n = 3 or 4"),
-    (
-        lambda: nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
-        "have poses",
-    ),
+    (lambda: _run(TOP, (1.0, 0.5), reconstruct=False), "have poses"),
     (lambda: nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
     ask=lambda make: nh.explore(make()),
     kind=(TypeError, ValueError),
@@ -300,7 +297,7 @@ test_refusals = refusals(
 
 def test_writing(tmp_path: Path) -> None:
     """A page is a new file, unless it may replace one."""
-    orbit, path = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2), tmp_path / "page.html"
+    orbit, path = _run(TOP, (1.0, 0.5)), tmp_path / "page.html"
     orbit.to_html(path)
     assert path.read_text("ascii") == nh.explore(orbit).text
     with pytest.raises(FileExistsError, match="to_html"):
@@ -309,17 +306,15 @@ def test_writing(tmp_path: Path) -> None:
 
 
 def test_command(tmp_path: Path) -> None:
-    """`nonholo explore` writes the page of a scenario and of a store."""
-    page, store = tmp_path / "page.html", tmp_path / "run.zarr"
-    run = CliRunner().invoke(app, ["explore", "sleigh", "--steps", "7", "-o", str(page), "--no-browser"])
-    assert (run.exit_code, run.stdout.strip()) == (0, str(page))
-    assert _data(page.read_text())["state"]["steps"] == 7
-    orbit = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=11)
-    nh.save_orbit(orbit, store)
-    run = CliRunner().invoke(app, ["explore", str(store), "-o", str(page), "--no-browser", "--overwrite"])
-    assert run.exit_code == 0
-    assert _data(page.read_text())["state"]["steps"] == 11
-    run = CliRunner().invoke(app, ["explore", "sleigh", "-o", str(page), "--no-browser"])
-    assert run.exit_code == 2
-    run = CliRunner().invoke(app, ["explore", "no such thing", "--no-browser"])
-    assert run.exit_code == 2
+    """`nonholo explore` writes the page of a scenario and of a store, and never over a page unless told to."""
+    page, store = tmp_path / "page.html", str(tmp_path / "run.zarr")
+    nh.save_orbit(_run(TOP, (1.0, 0.5), steps=11), store)
+
+    def explore(*arguments: str) -> Any:
+        return CliRunner().invoke(app, ["explore", *arguments, "-o", str(page), "--no-browser"])
+
+    for arguments, steps in ((("sleigh", "--steps", "7"), 7), ((store, "--overwrite"), 11)):
+        run = explore(*arguments)
+        assert (run.exit_code, run.stdout.strip()) == (0, str(page))
+        assert _data(page.read_text())["state"]["steps"] == steps
+    assert [explore(name).exit_code for name in ("sleigh", "no such thing")] == [2, 2]

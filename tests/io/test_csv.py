@@ -1,5 +1,6 @@
 """Poses as CSV: every number is read back exactly, rows continue from one another, and a file is whole or not there."""
 
+import functools
 import io
 import json
 import os
@@ -10,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 from damage import damage
-from scipy.spatial.transform import Rotation
+from groups.examples import HEISENBERG
+from refusals import assert_refused, refusals
 from stopping import stopped_at
 
 import nonholo as nh
@@ -19,12 +21,9 @@ from nonholo.io.blocks import edit_attributes
 from nonholo.io.metadata import read_attributes
 from nonholo.io.places import write_lock
 
-EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns forever
-FORWARDS = nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], np.diag([0.5, 0.7, 0.9])), 0.1)
 TOP = nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))
 SPIN: dict[str, Any] = {"restricted_velocity": (3.0, 0.5)}
-HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 
 
 def _read(text: str) -> tuple[list[str], np.ndarray]:
@@ -51,29 +50,6 @@ def store(tmp_path: Path) -> Path:
     return tmp_path / "run.zarr"
 
 
-def test_signs_of_quaternions_are_continuous(tmp_path: Path) -> None:
-    """A body that turns beyond half a circle gets a negative scalar part, not a jump."""
-    orbit = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(0.9, 0.4), steps=200)
-    q = _read(_written(orbit, tmp_path))[1][:, 1:]
-    assert q[0, 0] == 1
-    assert q[:, 0].min() < -0.9
-    assert np.linalg.norm(np.diff(q, axis=0), axis=1).max() < 0.1
-
-
-def test_space_has_position_and_quaternion(tmp_path: Path) -> None:
-    """On SE(3) the position has its bits, the quaternion its rotation."""
-    orbit = nh.simulate(FORWARDS, restricted_velocity=(0.3, 0.8, 0.4), steps=50)
-    names, rows = _read(_written(orbit, tmp_path))
-    assert names == ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
-    assert np.array_equal(rows[:, 1:4], orbit.position)
-    found = Rotation.from_quat(rows[:, 4:], scalar_first=True).as_matrix()
-    assert np.abs(found - orbit.configuration[:, :3, :3]).max() < 20 * EPS
-
-
-def _free(group: Any) -> nh.Discretization:
-    return nh.discretize(nh.LLSystem(group, None, np.eye(group.dim), inertia_operator=np.eye(group.dim)), 0.1)
-
-
 @pytest.mark.parametrize(
     ("group", "position", "size"),
     [
@@ -88,7 +64,8 @@ def _free(group: Any) -> nh.Discretization:
 )
 def test_other_groups_have_the_entries_of_the_matrix(group: Any, position: int, size: int, tmp_path: Path) -> None:
     """Numbered positions, then the matrix row by row, with the bits of the orbit."""
-    motion = _free(group)
+    unit = np.eye(group.dim)
+    motion = nh.discretize(nh.LLSystem(group, None, unit, inertia_operator=unit), 0.1)
     g = np.stack([group.exp(t * np.cos(np.arange(group.dim))) for t in (0.0, 0.3, 0.7)])
     nothing = np.zeros((3, group.dim))
     orbit = nh.Orbit(motion, np.arange(3.0), nothing, nothing, group.pose_from_matrix(g))
@@ -153,8 +130,7 @@ def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
     nh.save_orbit(orbit, tmp_path / "run.zarr")
     motion = json.loads(read_attributes(tmp_path / "run.zarr")["motion"]) | {"difference": "callable"}
     edit_attributes(tmp_path / "run.zarr", {"motion": json.dumps(motion)})
-    with pytest.raises(ValueError, match="difference is a callable"):
-        nh.load_orbit(tmp_path / "run.zarr")
+    assert_refused(tmp_path / "run.zarr", "difference is a callable", nh.load_orbit)
     assert _of_store(tmp_path / "run.zarr") == _written(orbit, tmp_path)
 
 
@@ -224,8 +200,7 @@ def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path
     damage(next(path for path in (store / name / "c").rglob("*") if path.is_file() and "11" in path.parts), "flipped")
     stream = io.StringIO()
     for target in (tmp_path / "poses.csv", stream):
-        with pytest.raises(ValueError, match=f"chunk c/11.* of the array {name}"):
-            store_to_csv(store, target)
+        assert_refused(target, f"chunk c/11.* of the array {name}", functools.partial(store_to_csv, store))
     assert stream.getvalue() == ""
     assert list(tmp_path.iterdir()) == [store]
 
@@ -233,29 +208,23 @@ def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path
 def test_no_poses_are_refused(tmp_path: Path) -> None:
     """An orbit without poses, in memory or in a store, is refused with the remedy, and nothing is written."""
     orbit = nh.simulate(SPINNING, steps=5, reconstruct=False, **SPIN)
-    with pytest.raises(ValueError, match=r"with poses\. Got reconstruct=False\. Run with reconstruct=True"):
-        orbit.to_csv(tmp_path / "poses.csv")
+    words = r"with poses\. Got reconstruct=False\. Run with reconstruct=True"
+    assert_refused(tmp_path / "poses.csv", words, orbit.to_csv)
     nh.save_orbit(orbit, tmp_path / "run.zarr")
-    with pytest.raises(ValueError, match=r"hold poses.*Run it again with reconstruct=True"):
-        _of_store(tmp_path / "run.zarr")
+    assert_refused(tmp_path / "run.zarr", r"hold poses.*Run it again with reconstruct=True", _of_store)
     assert [path.name for path in tmp_path.iterdir()] == ["run.zarr"]
 
 
 def test_existing_file_is_refused_unless_asked(store: Path, tmp_path: Path) -> None:
-    """An older file stays as it is; `overwrite` replaces it."""
+    """An older file stays as it is; `overwrite` replaces it, but only a file."""
     target = tmp_path / "poses.csv"
     target.write_text("older")
-    for write in (nh.load_orbit(store).to_csv, lambda path: store_to_csv(store, path)):
-        with pytest.raises(FileExistsError, match=r"which exists\. Choose another path, or pass overwrite"):
-            write(target)
+    doors, words = (nh.load_orbit(store).to_csv, functools.partial(store_to_csv, store)), "or pass overwrite"
+    assert_refused(target, rf"which exists\. Choose another path, {words}", *doors, kind=FileExistsError)
     assert target.read_text() == "older"
     store_to_csv(store, target, overwrite=True)
     assert target.read_text() == _of_store(store)
     assert sorted(tmp_path.iterdir()) == [target, store]
-
-
-def test_folder_is_refused_even_when_asked(store: Path) -> None:
-    """Only files are replaced."""
     with pytest.raises(FileExistsError, match="not a file"):
         store_to_csv(store, store, overwrite=True)
     assert len(nh.load_orbit(store)) == 101
@@ -265,15 +234,12 @@ def test_other_stores_are_refused(tmp_path: Path) -> None:
     """A saved ensemble is no store of an orbit, and is called what it is."""
     batch = nh.ensemble(SPINNING, restricted_velocity=[[1.0, 0.5], [2.0, 0.5]], steps=3, save_every=1)
     batch.to_dataset().to_zarr(tmp_path / "members.zarr", consolidated=False)
-    with pytest.raises(ValueError, match=r"members\.zarr', a store of an ensemble"):
-        _of_store(tmp_path / "members.zarr")
+    assert_refused(tmp_path / "members.zarr", r"members\.zarr', a store of an ensemble", _of_store)
     assert _written(batch.orbit(1), tmp_path).startswith("t,x,y,theta\n")
 
 
-def test_wrong_arguments_are_refused(store: Path, tmp_path: Path) -> None:
-    """What is not an orbit, and a number of states that counts nothing, end before any work."""
-    with pytest.raises(ValueError, match="must be an orbit\\. Got array"):
-        nh.Orbit.to_csv(np.zeros(3), tmp_path / "poses.csv")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"`store_to_csv\(every=\.\.\.\)`"):
-        store_to_csv(store, tmp_path / "poses.csv", every=0)
-    assert list(tmp_path.iterdir()) == [store]
+# What is not an orbit, and a number of states that counts nothing, end before any work.
+test_wrong_arguments_are_refused = refusals(
+    (lambda: nh.Orbit.to_csv(np.zeros(3), Path("poses.csv")), "must be an orbit\\. Got array"),  # type: ignore[arg-type]
+    (lambda: store_to_csv(Path("run.zarr"), Path("poses.csv"), every=0), r"`store_to_csv\(every=\.\.\.\)`"),
+)

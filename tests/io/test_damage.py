@@ -1,5 +1,7 @@
-"""Chunks in the place of others, damaged records, columns of another version, texts that would control a terminal."""
+"""Stores of strangers: chunks in the place of others, damaged records, evil names and texts, other versions."""
 
+import csv
+import io
 import json
 import os
 import shutil
@@ -12,23 +14,33 @@ import numpy as np
 import pytest
 import zarr
 from damage import swap
+from plot.runs import along
+from refusals import assert_refused
 from stopping import stopped_at
 from typer.testing import CliRunner
 
 import nonholo as nh
+from nonholo.base.checks import is_name
 from nonholo.cli._app import app
+from nonholo.ensembles import sweep_to_csv
 from nonholo.io import orbits, store_to_csv
 from nonholo.io.blocks import edit_attributes
-from nonholo.io.metadata import check_array
+from nonholo.io.metadata import check_array, read_attributes
 from nonholo.io.orbits import open_stream
+from nonholo.io.places import SCHEMAS
+from nonholo.io.tables import table_lines
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1), 0.1)
-RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60, "checkpoint_every": 10}
+RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60}
 NORTH = nh.Event(lambda states: np.cos(3 * states.heading), name="north")
 
 
 def _run(store: Path, **more: Any) -> nh.Orbit:
-    return nh.simulate(SLEIGH, **RUN, **more, store=store)
+    return nh.simulate(SLEIGH, **RUN, **more, store=store, checkpoint_every=10)
+
+
+def _export(store: Path) -> None:
+    store_to_csv(store, store.with_suffix(".csv"))
 
 
 @pytest.mark.profile("faults", keep=["canonical*"])
@@ -50,16 +62,13 @@ def test_a_chunk_in_the_place_of_another_is_refused(one: str, other: str, tmp_pa
     whole = _run(run, events=[NORTH])
     assert len(list((run / "run" / "events" / "c").iterdir())) > 1
     swap(run, one, other)
-    for opened in (nh.load_orbit, lambda store: store_to_csv(store, tmp_path / "poses.csv")):
-        with pytest.raises(ValueError, match=r"hold|damaged"):
-            opened(run)
+    assert_refused(run, r"hold|damaged", nh.load_orbit, _export)
     unfinished = tmp_path / "unfinished.zarr"
     with stopped_at(6):
         _run(unfinished, events=[NORTH])
     swap(unfinished, one, other)
     if "start" in one:
-        with pytest.raises(ValueError, match="start of the run"):
-            nh.resume(unfinished, events=[NORTH])
+        assert_refused(unfinished, "start of the run", lambda path: nh.resume(path, events=[NORTH]))
         return
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that it is damaged
@@ -72,22 +81,19 @@ def test_attributes_of_another_store_are_refused(tmp_path: Path) -> None:
     """Those of another run of this length have a checksum, too; the seals tell that they belong to other chunks."""
     own, other = tmp_path / "own.zarr", tmp_path / "other.zarr"
     _run(own)
-    nh.simulate(nh.discretize(nh.ChaplyginSleigh(2.0, 0.7, 0.3, 0.1), 0.1), **RUN, store=other)
+    heavier = nh.discretize(nh.ChaplyginSleigh(2.0, 0.7, 0.3, 0.1), 0.1)
+    nh.simulate(heavier, **RUN, store=other, checkpoint_every=10)
     shutil.copy(other / "zarr.json", own)
-    for opened in (nh.load_orbit, lambda store: store_to_csv(store, tmp_path / "poses.csv")):
-        with pytest.raises(ValueError, match="another place or store in block 0"):
-            opened(own)
+    assert_refused(own, "another place or store in block 0", nh.load_orbit, _export)
     with pytest.warns(RuntimeWarning, match="another place"), pytest.raises(ValueError, match="start of the run"):
         nh.resume(own)
 
 
 def test_an_orbit_that_was_saved_whole_is_sealed(tmp_path: Path) -> None:
     """Chunks of two of its arrays that have one shape are not taken for each other."""
-    nh.save_orbit(nh.simulate(SLEIGH, body_velocity=(0.3, -1.0, 0.0), steps=20), tmp_path / "orbit.zarr")
+    nh.save_orbit(nh.simulate(SLEIGH, **RUN), tmp_path / "orbit.zarr")
     swap(tmp_path / "orbit.zarr", "energy/c/0", "heading/c/0")
-    for opened in (nh.load_orbit, lambda store: store_to_csv(store, tmp_path / "poses.csv")):
-        with pytest.raises(ValueError, match="each chunk in its place"):
-            opened(tmp_path / "orbit.zarr")
+    assert_refused(tmp_path / "orbit.zarr", "each chunk in its place", nh.load_orbit, _export)
 
 
 def test_a_damaged_mark_exports_no_other_table(tmp_path: Path) -> None:
@@ -96,8 +102,7 @@ def test_a_damaged_mark_exports_no_other_table(tmp_path: Path) -> None:
     with stopped_at(4):
         _run(store)
     (store / "run" / "blocks" / "3.json").write_bytes(b"")
-    with pytest.raises(ValueError, match="must hold sound blocks"):
-        store_to_csv(store, tmp_path / "poses.csv")
+    assert_refused(store, "must hold sound blocks", _export)
 
 
 def test_a_run_that_failed_before_a_row_is_sealed_too(tmp_path: Path) -> None:
@@ -122,16 +127,16 @@ def test_metadata_of_inner_groups_are_written_again(group: str, tmp_path: Path) 
 
 
 def test_what_is_written_has_a_checksum(tmp_path: Path) -> None:
-    """Whoever changes an attribute by hand changes the checksum too, or is noticed: rows, end, number of steps."""
+    """Whoever changes an attribute by hand changes the checksum too, or is noticed: rows, end, steps, the body."""
     _run(tmp_path / "run.zarr")
     document = json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())
     told = document["attributes"]
-    for name, value in (("save_every", 2), ("outcome", "not_converged"), ("run", told["run"].replace("60", "90"))):
+    edits = {"run": told["run"].replace("60", "90"), "parameters": told["parameters"].replace("1.1", "7.0")}
+    for name, value in (edits | {"save_every": 2, "outcome": "not_converged"}).items():
+        assert value != told[name]
         edited = document | {"attributes": told | {name: value}}
         (tmp_path / "run.zarr" / "zarr.json").write_text(json.dumps(edited))
-        for opened in (nh.load_orbit, nh.resume):
-            with pytest.raises(ValueError, match="checksum differs"):
-                opened(tmp_path / "run.zarr")
+        assert_refused(tmp_path / "run.zarr", "checksum differs", nh.load_orbit, nh.resume)
 
 
 @pytest.mark.parametrize(("key", "value"), [("shape", 10**400), ("clevel", 22)], ids=["shape", "level"])
@@ -169,9 +174,7 @@ def test_deep_metadata_are_refused(tmp_path: Path) -> None:
     """Nested beyond what a reader follows, at any place: an error of ours."""
     (tmp_path / "deep.zarr").mkdir()
     (tmp_path / "deep.zarr" / "zarr.json").write_text('{"attributes": ' + "[" * 100_000 + "]" * 100_000 + "}")
-    for opened in (nh.load_orbit, nh.load_sweep, nh.resume):
-        with pytest.raises(ValueError, match=r"must be a store of an? \w+"):
-            opened(tmp_path / "deep.zarr")
+    assert_refused(tmp_path / "deep.zarr", r"must be a store of an? \w+", nh.load_orbit, nh.load_sweep, nh.resume)
 
 
 def test_marked_blocks_are_listed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -216,7 +219,6 @@ def test_a_scenario_that_no_file_can_hold_is_refused(tmp_path: Path) -> None:
         _run(tmp_path / "run.zarr", scenario="\udcff")
 
 
-SHORT_RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60}
 CHOSEN = orbits.stored_variables
 
 
@@ -231,13 +233,125 @@ def test_a_later_column_breaks_no_unfinished_run(given: bool, tmp_path: Path, mo
     path = tmp_path / "run.zarr"
     monkeypatch.setattr(orbits, "stored_variables", _without_energy)
     with stopped_at(3):
-        nh.simulate(SLEIGH, **SHORT_RUN, checkpoint_every=10, store=path)
+        _run(path)
     monkeypatch.undo()
     (path / "x" / "c" / "1").unlink()
     with pytest.warns(RuntimeWarning, match="chunk c/1 of the array x. Block 1 is computed again"):
         found = nh.resume(path, discrete=SLEIGH if given else None)
-    assert found.to_dataset().identical(nh.simulate(SLEIGH, **SHORT_RUN).to_dataset())
+    assert found.to_dataset().identical(nh.simulate(SLEIGH, **RUN).to_dataset())
     longer = nh.extend(path, 25)
-    assert longer.to_dataset().identical(nh.simulate(SLEIGH, **SHORT_RUN | {"steps": 85}).to_dataset())
+    assert longer.to_dataset().identical(nh.simulate(SLEIGH, **RUN | {"steps": 85}).to_dataset())
     assert "energy" not in json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["arrays"])
     assert not (path / "energy").exists()
+
+
+FORMULA, FORGED = "=cmd|' /C calc'!A0", "a\n9,9,9,9"
+HOSTILE = ("", FORMULA, FORGED, "a,b", "a b", "../a", "1a", "_a", "größe", "a\x1b[2J", "a" * 101, 1, None)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of a free particle in coordinates, and the result of a sweep."""
+    folder = tmp_path_factory.mktemp("names")
+    particle = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=3, coordinates=("x", "y", "z"))
+    nh.save_orbit(along(particle, np.zeros((2, 3))), folder / "run.zarr")
+    nh.sweep(lambda block: {"total": (("side",), block["x"][:, None])}, nh.Grid({"x": [1.0]}), folder / "sweep.zarr")
+    assert nh.load_orbit(folder / "run.zarr").coordinates == ("x", "y", "z")
+    return folder
+
+
+def _refused(store: Path, *reads: Callable[[Path], Any]) -> None:
+    """Check that every way to read a store refuses it in words, and that no command writes a file or a traceback."""
+    assert_refused(store, "name", *reads)
+    for command in (["export", "-o", f"{store}.csv"], ["resume"], ["info"]):
+        result = CliRunner().invoke(app, [command[0], str(store), *command[1:]])
+        assert (result.exit_code, type(result.exception)) in ((1, SystemExit), (2, SystemExit))
+        assert "name" in result.output or "saved whole" in result.output
+        assert not Path(f"{store}.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "coordinates",
+    [["x", "y", FORMULA], ["x", "y", FORGED], ["x"] * 3, ["t", "x", "y"], ["x", "y"], ["x", "energy", "y"], []],
+    ids=["formula", "forged row", "thrice", "time", "two", "energy", "none"],
+)
+def test_coordinates_of_a_strangers_store(coordinates: list[str], kept: Path, tmp_path: Path) -> None:
+    """A store of a system in coordinates gives its columns names that the class would take, or is refused."""
+    store = shutil.copytree(kept / "run.zarr", tmp_path / "run.zarr")
+    parameters = json.loads(read_attributes(store)["parameters"])
+    edit_attributes(store, {"parameters": json.dumps(parameters | {"coordinates": coordinates})})
+    _refused(store, nh.load_orbit, lambda path: store_to_csv(path, io.StringIO()))
+
+
+@pytest.mark.parametrize("name", [FORMULA, FORGED, "=1+1", "a b"])
+@pytest.mark.parametrize("place", ["axes", "outputs", "dimension"])
+def test_names_of_a_strangers_sweep(place: str, name: str, kept: Path, tmp_path: Path) -> None:
+    """So do the design, the outputs and the dimensions of a sweep."""
+    store = shutil.copytree(kept / "sweep.zarr", tmp_path / "sweep.zarr")
+    content = json.loads(read_attributes(store, "nonholo.sweep")["sweep"])
+    match place:
+        case "axes":
+            content["design"]["axes"] = {name: content["design"]["axes"]["x"]}
+        case "outputs":
+            content["outputs"][name] = content["outputs"].pop("total")
+        case _:
+            content["outputs"]["total"][0] = [name]
+    edit_attributes(store, {"sweep": json.dumps(content)})
+    _refused(store, nh.load_sweep, nh.resume)
+
+
+@pytest.mark.parametrize("name", HOSTILE, ids=ascii)
+def test_no_class_takes_such_a_name(name: Any, tmp_path: Path) -> None:
+    """Coordinates, shapes, events, designs, results of tasks and their dimensions are called by names alone."""
+    assert not is_name(name)
+    makers = {
+        "coordinates": lambda: nh.LagrangeDAlembert(lambda _, v: v @ v, None, dimension=1, coordinates=(name,)),
+        "shape": lambda: nh.ShapedBody(nh.SO(3), (name,), lambda _s, _v, w: w @ w),
+        "event": lambda: nh.Event(len, name=name) if name is not None else nh.Event(len, name=0),  # type: ignore[arg-type]
+        "grid": lambda: nh.Grid({name: [1.0]}),
+        "draw": lambda: nh.RandomDesign(1, {name: nh.Normal()}),
+        "output": lambda: nh.sweep(lambda block: {name: block["x"]}, nh.Grid({"x": [1.0]}), tmp_path / "a"),
+        "dimension": lambda: nh.sweep(
+            lambda block: {"y": ((name,), block["x"][:, None])}, nh.Grid({"x": [1.0]}), tmp_path / "b"
+        ),
+    }
+    for maker in makers.values():
+        with pytest.raises(ValueError, match="name"):
+            maker()
+    assert not list(tmp_path.iterdir())
+
+
+def test_headers_are_quoted() -> None:
+    """A header is written as CSV besides: whatever a column is called, it stays one cell."""
+    names = ["t", FORGED, 'a "b", c']
+    assert next(csv.reader(io.StringIO("".join(table_lines(names, []))))) == names
+
+
+REFUSAL = (
+    r"must have schema {now}, the one that this version reads\. Got schema {schema}, of before 0\.3\.0, from which on "
+    r"later versions read stores\. Read it with the version that wrote it, .*\"nonholo\": \"0\.2\.0\".*, and save "
+    r"it as CSV, or repeat the run\."
+)
+
+
+def _sweep(path: Path) -> None:
+    task = nh.EnsembleTask(SLEIGH, steps=9, restricted_velocity=(0.3, -1.0))
+    nh.sweep(task, nh.Grid({"b": [0.0, 0.3]}), path).close()
+
+
+DOORS: dict[str, tuple[Any, list[Callable[[Path], Any]]]] = {
+    "nonholo.orbit": (_run, [nh.load_orbit, lambda path: nh.extend(path, 3), _export]),
+    "nonholo.sweep": (_sweep, [nh.load_sweep, lambda path: sweep_to_csv(path, path.with_suffix(".csv"))]),
+}
+EARLIER = [(kind, schema) for kind, newest in SCHEMAS.items() for schema in range(1, newest)]
+
+
+@pytest.mark.profile("faults", keep=["*-1", "*-3"])
+@pytest.mark.parametrize(("kind", "schema"), EARLIER)
+def test_every_earlier_schema_is_refused(kind: str, schema: int, tmp_path: Path) -> None:
+    """Whoever reads, resumes, extends or exports it reads its schema, that of this version, and what to do."""
+    path, (make, doors) = tmp_path / "run.zarr", DOORS[kind]
+    make(path)
+    edit_attributes(path, {"schema": schema, "versions": json.dumps({"nonholo": "0.2.0", "numpy": "2.2.0"})})
+    assert_refused(path, REFUSAL.format(now=SCHEMAS[kind], schema=schema), nh.resume, *doors)
+    assert list(tmp_path.iterdir()) == [path]

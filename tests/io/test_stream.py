@@ -2,7 +2,6 @@
 
 import contextlib
 import errno
-import fcntl
 import inspect
 import itertools
 import json
@@ -15,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from stopping import stopped_in
 
 import nonholo as nh
 from nonholo.io import places
@@ -109,15 +109,12 @@ def test_lock_knows_no_process_numbers(store: Path) -> None:
     assert subprocess.run(other, capture_output=True, text=True, check=True).stdout == "1\n"  # noqa: S603
 
 
-def test_file_systems_without_locks_are_named(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_systems_without_locks_are_named(store: Path) -> None:
     """Where the file system has no locks, nothing is written, and the remedy is named."""
-
-    def missing(*_: object) -> None:
-        raise OSError(errno.ENOSYS, "Function not implemented")
-
-    monkeypatch.setattr(fcntl, "flock", missing)
-    with pytest.raises(OSError, match=r"cannot be locked.*Function not implemented.*write it elsewhere.*run\.zarr"):
-        _ = places.write_lock(store).__enter__()
+    missing = OSError(errno.ENOSYS, "Function not implemented")
+    words = r"cannot be locked.*Function not implemented.*write it elsewhere.*run\.zarr"
+    with stopped_in("fcntl.flock", missing, words), places.write_lock(store):
+        pass
 
 
 def test_one_of_many_takes_a_lock(store: Path) -> None:
@@ -167,8 +164,7 @@ def test_blocks_cover_every_step_and_state_once(steps: int, rows: int, every: in
 MAKER = """
 import sys
 from pathlib import Path
-from nonholo.io.places import check_assertions
-from nonholo.io.places import check_target, complete_file, new_beside, remove_store
+from nonholo.io.places import new_beside
 with new_beside(Path(sys.argv[1])) as part:
     part.mkdir()
     print("making", flush=True)
@@ -185,8 +181,7 @@ def hidden(folder: Path) -> list[str]:
 @pytest.mark.parametrize("name", ["run.zarr", "odd [1]*.zarr"])
 def test_the_next_maker_removes_what_a_killed_one_left(name: str, tmp_path: Path) -> None:
     """Only of the same path, and only if its maker is dead."""
-    orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.3, 0.2), steps=3)
-    path = tmp_path / name
+    orbit, path = _orbit(), tmp_path / name
     command = [sys.executable, "-c", MAKER, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as maker:  # noqa: S603
         assert maker.stdout is not None
@@ -228,16 +223,11 @@ def test_store_that_was_being_replaced(is_replaced: bool, tmp_path: Path) -> Non
     assert hidden(tmp_path) == []
 
 
-def test_store_is_removed_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_store_is_removed_at_once(tmp_path: Path) -> None:
     """A kill while its files are removed leaves nothing at the path: half a store would be no store to replace."""
-
-    def stopped(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
     path = tmp_path / "run.zarr"
     nh.save_orbit(_orbit(), path)
-    monkeypatch.setattr(shutil, "rmtree", stopped)
-    with pytest.raises(KeyboardInterrupt):
+    with stopped_in("shutil.rmtree"):
         places.remove_store(path)
     assert not path.exists()
     assert hidden(tmp_path) != []
@@ -287,10 +277,7 @@ def test_python_without_assertions(tmp_path: Path) -> None:
 
 def test_refusal_without_assertions() -> None:
     """The check of every door, as Python compiles it with -O, refuses; as it is here, it does not."""
-    source, names = (
-        inspect.getsource(places.check_assertions),
-        dict(vars(sys.modules[places.check_assertions.__module__])),
-    )
+    source, names = inspect.getsource(places.check_assertions), dict(vars(places))
     exec(compile(source, "optimized", "exec", optimize=1), names)  # noqa: S102
     with pytest.raises(ValueError, match=WORDS):
         names["check_assertions"]("save_orbit(path=...)")

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from matrix.kinds import STEPS
 from matrix.ready import ALL
-from PIL import Image
+from plot.runs import frames_of
 from stopping import stopped_at
 from typer.testing import CliRunner
 
@@ -37,6 +37,7 @@ class Case:
         self.known = {"discrete": self.discrete} if "function" in self.kind.traits else {}
         self.ready = self.kind.made()
         self.is_wide = "wide" in self.kind.traits
+        self.kept = "restricted_momentum" if self.is_wide else "body_velocity"
         self.in_coordinates = "coordinates" in self.kind.traits
         if self.ready is None:
             self.start = {"restricted_velocity": 0.5 * np.cos(np.arange(self.system.rank)) / np.sqrt(self.system.rank)}
@@ -182,11 +183,16 @@ def store(c: Case, folder: Path) -> None:
 @ability
 def save_and_load(c: Case, folder: Path) -> None:
     """A saved orbit comes back with its bits, decoded too."""
-    nh.save_orbit(c.orbit, folder / "a.zarr")
-    loaded = nh.load_orbit(folder / "a.zarr", **c.known)
-    assert_same(loaded, c.orbit)
-    np.testing.assert_array_equal(loaded.energy, c.orbit.energy)
+    loaded = _saved_and_loaded(c.orbit, folder / "a.zarr", **c.known)
     np.testing.assert_array_equal(loaded.body_velocity, c.orbit.body_velocity)
+
+
+def _saved_and_loaded(orbit: Any, store: Path, **known: Any) -> Any:
+    nh.save_orbit(orbit, store)
+    loaded = nh.load_orbit(store, **known)
+    assert_same(loaded, orbit)
+    np.testing.assert_array_equal(loaded.energy, orbit.energy)
+    return loaded
 
 
 @ability
@@ -264,20 +270,20 @@ def _assert_member(batch: Any, member: int, alone: Any) -> None:
 @ability
 def ensemble_of_time_steps(c: Case, _: Path) -> None:
     """Members are runs alone with their time steps."""
-    batch = nh.ensemble(
-        c.discrete, steps=STEPS, save_every=1, parameters={"time_step": [c.h, c.h / 2]}, **c.start, **c.run
-    )
+    _assert_members_of(c, {"time_step": [c.h, c.h / 2]}, c.halves.chosen(slice(0, 1 + STEPS)))
+
+
+def _assert_members_of(c: Case, parameters: dict[str, Any], second: Any) -> None:
+    """Compare two members of an ensemble with the run and another one."""
+    batch = nh.ensemble(c.discrete, steps=STEPS, save_every=1, parameters=parameters, **c.start, **c.run)
     _assert_member(batch, 0, c.orbit)
-    _assert_member(batch, 1, c.halves.chosen(slice(0, 1 + STEPS)))
+    _assert_member(batch, 1, second)
 
 
 @ability
 def ensemble_of_parameters(c: Case, _: Path) -> None:
     """Members are runs alone of their bodies."""
-    parameters = {c.kind.parameter: np.stack(c.kind.values)}
-    batch = nh.ensemble(c.discrete, steps=STEPS, save_every=1, parameters=parameters, **c.start, **c.run)
-    _assert_member(batch, 0, c.orbit)
-    _assert_member(batch, 1, c.simulated(c.kind.discrete(c.h, value=1)))
+    _assert_members_of(c, {c.kind.parameter: np.stack(c.kind.values)}, c.simulated(c.kind.discrete(c.h, value=1)))
 
 
 @ability
@@ -354,11 +360,8 @@ def flow_ensemble(c: Case, _: Path) -> None:
 @ability
 def flow_store(c: Case, folder: Path) -> None:
     """A saved flow comes back with its bits."""
-    nh.save_orbit(c.flow, folder / "a.zarr")
     known = {"discrete": c.flow.motion} if c.known and getattr(c.system, "forces", c.system) else {}
-    loaded = nh.load_orbit(folder / "a.zarr", **known)
-    assert_same(loaded, c.flow)
-    np.testing.assert_array_equal(loaded.energy, c.flow.energy)
+    _saved_and_loaded(c.flow, folder / "a.zarr", **known)
 
 
 @ability
@@ -386,8 +389,7 @@ def dataset(c: Case, _: Path) -> None:
     told = c.orbit.to_dataset()
     np.testing.assert_array_equal(told["time"], c.orbit.time)
     np.testing.assert_array_equal(told["energy"], c.orbit.energy)
-    name = "restricted_momentum" if c.is_wide else "body_velocity"
-    np.testing.assert_array_equal(told[name], getattr(c.orbit, name))
+    np.testing.assert_array_equal(told[c.kept], getattr(c.orbit, c.kept))
 
 
 @ability
@@ -396,9 +398,8 @@ def pandas(c: Case, _: Path) -> None:
     table = c.orbit.to_pandas()
     np.testing.assert_array_equal(table.index, c.orbit.time)
     np.testing.assert_array_equal(table["energy"], c.orbit.energy)
-    kept = "restricted_momentum" if c.is_wide else "body_velocity"
-    columns = [name for name in table if str(name).startswith(kept)]
-    np.testing.assert_array_equal(table[columns], getattr(c.orbit, kept))
+    columns = [name for name in table if str(name).startswith(c.kept)]
+    np.testing.assert_array_equal(table[columns], getattr(c.orbit, c.kept))
 
 
 @ability
@@ -426,12 +427,8 @@ def picture(c: Case, folder: Path) -> None:
 @ability
 def film(c: Case, folder: Path) -> None:
     """The film has its frames, and they differ."""
-    nh.plot.animate(c.orbit, folder / "a.gif", frames=2, size=(1.6, 1.2))
-    with Image.open(folder / "a.gif") as movie:
-        first = np.asarray(movie.convert("RGB"), dtype=int)
-        movie.seek(1)
-        assert movie.n_frames == 2
-        assert np.abs(np.asarray(movie.convert("RGB"), dtype=int) - first).max() > 60
+    first, second = frames_of(nh.plot.animate(c.orbit, folder / "a.gif", frames=2, size=(1.6, 1.2)))
+    assert np.abs(second - first).max() > 60
 
 
 @ability

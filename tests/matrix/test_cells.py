@@ -1,11 +1,9 @@
 """What works with what: every ability with every kind of motion, its value against the same value by another way."""
 
 import contextlib
-import functools
 from collections.abc import Callable
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import pytest
 from matrix.abilities import ABILITIES, case
 from matrix.kinds import KINDS
@@ -62,21 +60,18 @@ def run_cell(
     tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> Callable[[str, str], None]:
     """Return what runs a cell."""
-    return functools.partial(_run_cell, tmp_path, request, monkeypatch)
 
+    def run(kind: str, ability: str) -> None:
+        rule = CELLS[kind, ability]
+        if "wide" in ALL[kind].traits:  # on every machine
+            monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)
+        if rule is not None and rule.is_broken:
+            request.applymarker(pytest.mark.xfail(strict=True, raises=(ValueError, TypeError), reason=rule.reason))
+        refused = rule is not None and not rule.is_broken
+        with pytest.raises((ValueError, TypeError), match=rule.refusal) if refused else contextlib.nullcontext():
+            ABILITIES[ability](case(kind), tmp_path)
 
-def _run_cell(
-    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, kind: str, ability: str
-) -> None:
-    rule = CELLS[kind, ability]
-    if "wide" in ALL[kind].traits:  # on every machine
-        monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)
-    if rule is not None and rule.is_broken:
-        request.applymarker(pytest.mark.xfail(strict=True, raises=(ValueError, TypeError), reason=rule.reason))
-    refused = rule is not None and not rule.is_broken
-    with pytest.raises((ValueError, TypeError), match=rule.refusal) if refused else contextlib.nullcontext():
-        ABILITIES[ability](case(kind), tmp_path)
-    plt.close("all")
+    return run
 
 
 def test_few_cells_are_broken() -> None:

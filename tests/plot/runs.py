@@ -1,8 +1,13 @@
 """Short runs that the tests of the pictures share."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
+from PIL import Image, ImageSequence
 
 import nonholo as nh
+from nonholo.lagrange_dalembert import CoordinateOrbit
 
 MASS_TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 
@@ -25,10 +30,22 @@ def body_tensor(n: int) -> np.ndarray:
     return askew.T @ askew / (4 * n)
 
 
-def run_of(system: nh.SuslovTop, steps: int = 40, **options: object) -> nh.Orbit:
+def run_of(system: nh.SuslovTop, steps: int = 40, speed: float = 0.6, **options: object) -> nh.Orbit:
     """Run any system from a start without symmetry."""
-    velocity = 0.6 * np.cos(np.arange(system.rank))
+    velocity = speed * np.cos(np.arange(system.rank))
     return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=steps, **options)
+
+
+def along(system: Any, q: np.ndarray) -> CoordinateOrbit:
+    """Return an orbit of a system in coordinates through given places, in a time of one."""
+    t = np.linspace(0.0, 1.0, len(q))
+    return CoordinateOrbit(t, q, 0 * q, 0 * q, 0 * q, q[:, :0], t + 1, 0 * t, system=system, time_step=t[1])
+
+
+def frames_of(film: str | Path) -> list[np.ndarray]:
+    """Return the colors of each frame of a GIF."""
+    with Image.open(film) as movie:
+        return [np.asarray(frame.convert("RGB"), dtype=int) for frame in ImageSequence.Iterator(movie)]
 
 
 def made_up(system: nh.LLSystem, states: int = 5) -> nh.Orbit:

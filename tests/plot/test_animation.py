@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.animation import FFMpegWriter
 from PIL import Image
-from plot.runs import body_tensor, run_of, sleigh_run, top_run
+from plot.runs import along, body_tensor, frames_of, run_of, sleigh_run, top_run
 
 import nonholo as nh
 from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
@@ -37,8 +37,7 @@ def test_number_and_time_of_frames(kind: str, tmp_path: Path, request: pytest.Fi
 )
 def test_no_more_frames_than_states(orbit: nh.Orbit, tmp_path: Path) -> None:
     """A body at rest still makes as many frames as there are states."""
-    with Image.open(nh.plot.animate(orbit, tmp_path / "a.gif", frames=50)) as movie:
-        assert movie.n_frames == len(orbit)
+    assert len(frames_of(nh.plot.animate(orbit, tmp_path / "a.gif", frames=50))) == len(orbit)
 
 
 def test_long_orbits_show_the_transition() -> None:
@@ -97,8 +96,7 @@ def _coordinates(z: bool) -> CoordinateOrbit:
     q = np.stack([np.cos(t), np.sin(t), t], axis=1)
     names = ("x", "y", "z") if z else ("x", "y", "a")
     heading = {} if z else {"heading": "a", "outline": [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)]]}
-    system = LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=3, coordinates=names, **heading)
-    return CoordinateOrbit(t, q, 0 * q, 0 * q, 0 * q, q[:, :0], t + 1, 0 * t, system=system, time_step=0.025)
+    return along(LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=3, coordinates=names, **heading), q)
 
 
 BODIES = {
@@ -119,12 +117,8 @@ def test_every_kind_of_body_moves(name: str, tmp_path: Path) -> None:
     path = nh.plot.animate(
         orbit, tmp_path / "a.gif", frames=2, size=(3.2, 2.4), flow=orbit.chosen(slice(None, None, 2)), dark=True
     )
-    with Image.open(path) as movie:
-        assert movie.size == (320, 240)
-        frames = []
-        for number in range(2):
-            movie.seek(number)
-            frames.append(np.asarray(movie.convert("RGB"), dtype=int))
+    frames = frames_of(path)
+    assert frames[0].shape == (240, 320, 3)
     assert np.mean(np.abs(frames[0] - frames[1]).max(axis=-1) > 60) > 0.003
     assert np.sum(np.abs(frames[1] - np.array([0xE6, 0x9F, 0x00])).max(axis=-1) < 40) > 20
 

@@ -3,7 +3,6 @@
 import functools
 
 import jax.numpy as jnp
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from refusals import refusals
@@ -36,7 +35,6 @@ def test_cells_show_what_counterclockwise_gaits_gain() -> None:
     swapped = nh.plot.curvature(car(), along=("phi", "psi"), bounds=((-1.2, 0.9), (-1, 2)))
     np.testing.assert_allclose(np.ma.getdata(swapped.values.get_array()), -shown.T, rtol=1e-12)
     assert not np.ma.getdata(nh.plot.curvature(car(), "v2").values.get_array()).any()
-    plt.close("all")
 
 
 def test_singular_cells_are_empty_and_the_colors_tell_the_others_apart() -> None:
@@ -47,7 +45,6 @@ def test_singular_cells_are_empty_and_the_colors_tell_the_others_apart() -> None
     assert np.ma.getmaskarray(values)[-1].all()
     assert np.ma.getmaskarray(values).sum() == 120
     assert picture.values.norm.vmax == pytest.approx(3 * np.median(np.abs(values.compressed())), rel=1e-12)
-    plt.close("all")
 
 
 def test_a_gait_is_drawn_within_its_range() -> None:
@@ -61,7 +58,6 @@ def test_a_gait_is_drawn_within_its_range() -> None:
     np.testing.assert_array_equal(picture.gait.get_xydata(), phase.shape)
     np.testing.assert_allclose([*picture.axes.get_xlim(), *picture.axes.get_ylim()], [-1.6, 1.6, -0.8, 0.8], atol=1e-3)
     assert picture.gait.get_label() == "mine"
-    plt.close("all")
 
 
 # Errors name the argument.

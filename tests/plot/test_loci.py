@@ -1,12 +1,14 @@
-"""Pictures of loci: what is drawn is what was computed, and nothing else is touched."""
+"""Loci, sections, phase portraits: what is drawn is what was computed, and nothing else is touched."""
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from refusals import refusals
 
 import nonholo as nh
 from nonholo.analysis import deltoid
+from nonholo.plot.sheets import plane_inertia
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
 BALANCED = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
@@ -98,13 +100,11 @@ def test_equilibria_on_the_curves(discrete: nh.Discretization) -> None:
 
 def test_balanced_systems_have_no_equilibria_on_the_curves() -> None:
     """Where every displacement repeats itself none is marked; the pictures of balanced systems are drawn."""
-    for system in (np.diag([1.0, 1.0, 3.0]), np.diag([1.0, 2.0, 3.0])):
-        discrete = nh.discretize(nh.SuslovTop(system), 0.5)
+    tops = [nh.SuslovTop(np.diag(moments)) for moments in ([1.0, 1.0, 3.0], [1.0, 2.0, 3.0])]
+    for system in (*tops, nh.ChaplyginSleigh(1.0, 1.0, 0.0)):
+        discrete = nh.discretize(system, 0.5)
         assert nh.plot.invariant_curves(discrete).stable is None
         nh.plot.momentum_locus(nh.momentum_locus(discrete, 8)).axes.figure.canvas.draw()
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.5)
-    assert nh.plot.invariant_curves(discrete).stable is None
-    nh.plot.momentum_locus(nh.momentum_locus(discrete, 8)).axes.figure.canvas.draw()
 
 
 def test_curves_do_not_cross_the_rim() -> None:
@@ -142,19 +142,14 @@ def test_branch_counts_draw_the_deltoid() -> None:
     assert np.allclose(np.sort(picture.orbit.get_offsets(), axis=0), np.sort(orbit.reduced_momentum, axis=0))
 
 
+_CURVE, _LOCUS = nh.invariant_curve(TOP, 1.0), nh.momentum_locus(TOP, 8)
 # Orbits of another system, no locus, a zero normal and energies below zero.
 test_refuses_what_does_not_belong = refusals(
     (lambda: nh.plot.branch_counts(SLEIGH, run(TOP)), r"`plot.branch_counts\(orbit=...\)` must be an orbit of"),
     (lambda: nh.plot.momentum_locus(TOP.system), r"`plot.momentum_locus\(locus=...\)` must be a locus"),
     (lambda: nh.plot.invariant_curves([TOP]), r"`plot.invariant_curves\(discrete=...\)` must be curves of one"),
-    (
-        lambda: nh.plot.invariant_curves([nh.invariant_curve(TOP, 1.0)], energies=[1.0]),
-        "must be left out beside curves",
-    ),
-    (
-        lambda: nh.plot.locus_section(nh.momentum_locus(TOP, 8), normal=(0, 0, 0)),
-        r"`plot.locus_section\(normal=...\)` must not be zero",
-    ),
+    (lambda: nh.plot.invariant_curves([_CURVE], energies=[1.0]), "must be left out beside curves"),
+    (lambda: nh.plot.locus_section(_LOCUS, normal=(0, 0, 0)), r"`plot.locus_section\(normal=...\)` must not be zero"),
     (lambda: nh.plot.invariant_curves(TOP, energies=[-1.0]), r"`plot.invariant_curves\(energies=...\)` must be posit"),
 )
 
@@ -168,20 +163,13 @@ def _crossings(steps: int) -> nh.Crossings:
 
 
 def test_dots_are_the_quantities_at_the_crossings() -> None:
-    """Each dot is a crossing, with the two quantities as its place and the time as its color."""
-    found = _crossings(100)
-    drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading)
+    """Each dot is a crossing, with the two quantities, whose names the axes bear, as place, the time as color."""
+    found, labels = _crossings(100), ("x", "heading")
+    drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading, labels=labels)
+    assert (drawn.axes.get_xlabel(), drawn.axes.get_ylabel()) == labels
     assert np.array_equal(drawn.points, np.stack([found.states.position[:, 0], found.states.heading], axis=1))
     assert np.array_equal(drawn.dots.get_offsets(), drawn.points)
     assert np.array_equal(drawn.dots.get_array(), found.time)
-
-
-def test_axes_bear_the_names_of_their_quantities() -> None:
-    """The first label is that of the abscissa, the second that of the ordinate."""
-    drawn = nh.plot.section(
-        _crossings(20), lambda states: states.position[:, 0], lambda states: states.heading, labels=("x", "heading")
-    )
-    assert (drawn.axes.get_xlabel(), drawn.axes.get_ylabel()) == ("x", "heading")
 
 
 # A section needs a crossing; a quantity one number for each, and the error names which one has not.
@@ -190,3 +178,79 @@ test_refused_sections = refusals(
     (20, lambda states: states.position, r"section\(up=.*shape"),
     ask=lambda steps, up: nh.plot.section(_crossings(steps), lambda states: states.time, up),
 )
+
+
+SYSTEMS = {
+    "top": TOP.system,
+    "tilted": nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=np.array([2.0, 1.0, 2.0]) / 3),
+    "sleigh": nh.ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5, b=0.3),
+    "backward sleigh": nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5, b=0.3),
+}
+ROUND_ONES = {"top": nh.SuslovTop(np.diag([1.4, 1.0, 0.9])), "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.2)}
+
+
+@pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
+def test_levels_have_their_energy(system: nh.SuslovTop | nh.ChaplyginSleigh) -> None:
+    """Every point of an ellipse has the energy it was asked for."""
+    portrait = nh.plot.phase_portrait(system, energies=[0.5, 2.0])
+    for level, energy in zip(portrait.levels, (0.5, 2.0), strict=True):
+        assert np.allclose(system.canonical.constrained_energy(level.get_xydata()), energy, rtol=1e-13)
+
+
+@pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
+def test_stable_filled_unstable_empty(system: nh.SuslovTop | nh.ChaplyginSleigh) -> None:
+    """Attracting equilibria are filled, repelling ones are empty, and each lies on its ellipse."""
+    portrait = nh.plot.phase_portrait(system, energies=[0.5, 2.0])
+    canonical = system.canonical
+    attracting = canonical.restrict(canonical.inertia_operator @ canonical.equilibria().attracting)
+    stable, unstable = (np.asarray(dots.get_offsets()) for dots in (portrait.stable, portrait.unstable))
+    assert np.allclose(canonical.constrained_energy(stable), [0.5, 2.0])
+    assert np.allclose(np.cross(np.pad(stable, ((0, 0), (0, 1))), [*attracting, 0.0]), 0.0, atol=1e-14)
+    assert np.all(stable @ attracting > 0)
+    assert np.allclose(unstable, -stable)
+    assert np.allclose(portrait.unstable.get_facecolor()[0, :3], to_rgb("white"))
+    assert np.allclose(portrait.stable.get_facecolor(), portrait.stable.get_edgecolor())
+
+
+@pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
+def test_arrows_point_to_the_stable_half(system: nh.SuslovTop | nh.ChaplyginSleigh) -> None:
+    """Arrows lead along each ellipse, on both sides, from the unstable to the stable equilibrium."""
+    portrait = nh.plot.phase_portrait(system, energies=[0.5, 2.0])
+    assert len(portrait.arrows) == 4
+    inverse = np.linalg.inv(system.canonical.constrained_inertia)
+    toward = portrait.stable.get_offsets()[0]
+    for arrow in portrait.arrows:
+        tail, head = (np.asarray(point) for point in arrow._posA_posB)
+        assert (head - tail) @ inverse @ toward > 0
+
+
+@pytest.mark.parametrize("system", ROUND_ONES.values(), ids=ROUND_ONES)
+def test_balanced_systems_have_no_direction(system: nh.SuslovTop | nh.ChaplyginSleigh) -> None:
+    """Where every point is an equilibrium there are dots on each ellipse, none stable or unstable, and no arrows."""
+    portrait = nh.plot.phase_portrait(system, energies=[0.5, 2.0])
+    assert portrait.stable is portrait.unstable is None
+    assert portrait.arrows == ()
+    energies = system.canonical.constrained_energy(np.asarray(portrait.neutral.get_offsets()))
+    assert np.allclose(np.unique(energies.round(9)), [0.5, 2.0])
+
+
+def test_orbit_dots_are_its_momenta(sleigh_orbit: nh.Orbit) -> None:
+    """The dots are the canonical momenta of all states, colored by their times; one ellipse goes through them."""
+    portrait = nh.plot.phase_portrait(sleigh_orbit.system, sleigh_orbit)
+    assert np.array_equal(portrait.orbit.get_offsets(), sleigh_orbit.reduced_momentum)
+    assert np.array_equal(portrait.orbit.get_array(), sleigh_orbit.time)
+    energies = [sleigh_orbit.system.canonical.constrained_energy(line.get_xydata()[0]) for line in portrait.levels]
+    assert np.isclose(energies, sleigh_orbit.energy[0], rtol=1e-12).any()
+
+
+def test_a_flow_is_a_line(sleigh_orbit: nh.Orbit) -> None:
+    """A continuous motion is drawn as a line through its momenta, with enough of them for a smooth curve."""
+    flow = nh.flow(sleigh_orbit.system, body_velocity=(0.1, -1.0, 0.0), times=np.linspace(0.0, 20.0, 50))
+    path = nh.plot.phase_portrait(flow.system, flow).orbit
+    assert isinstance(path, LineCollection)
+    drawn = np.array([segment[0] for segment in path.get_segments()])
+    assert len(drawn) > 1000
+    missed = np.linalg.norm(drawn[:, None] - flow.reduced_momentum[:-1], axis=2).min(axis=0)
+    assert missed.max() < 1e-13
+    energy = np.einsum("ki,ij,kj->k", drawn, np.linalg.inv(plane_inertia(flow.system)), drawn) / 2
+    assert np.allclose(energy, flow.energy[0], rtol=1e-12)

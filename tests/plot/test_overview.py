@@ -2,15 +2,17 @@
 
 import dataclasses
 import errno
+import functools
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
+from bodies import elsewhere
 from PIL import Image
-from plot.runs import MASS_TENSOR, top_run
+from plot.runs import MASS_TENSOR, frames_of, top_run
+from stopping import stopped_in
 
 import nonholo as nh
 from nonholo.plot.sheets import blade_of_system, on_plane, plane_inertia, sheet_of
@@ -53,39 +55,30 @@ def test_files(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
         assert ">Chaplygin sleigh</text>" in path.read_text()
 
 
-@pytest.mark.parametrize("draw", ["plot", "animate"])
-def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("draw", "name"), [(nh.Orbit.plot, "a.png"), (functools.partial(nh.plot.animate, frames=2), "a.gif")]
+)
+def test_older_pictures_are_kept(draw: Any, name: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """A picture at the path is kept unless it is to be replaced; a folder is never replaced."""
-    path = tmp_path / ("a.gif" if draw == "animate" else "a.png")
-    functions = {
-        "plot": lambda **options: sleigh_orbit.plot(str(path), **options),
-        "animate": lambda **options: nh.plot.animate(sleigh_orbit, path, frames=2, **options),
-    }
+    path = tmp_path / name
     path.write_text("mine")
     with pytest.raises(FileExistsError, match=r"must be new\. Got .* or pass overwrite=True"):
-        functions[draw]()
+        draw(sleigh_orbit, path)
     assert path.read_text() == "mine"
-    functions[draw](overwrite=True)
+    draw(sleigh_orbit, path, overwrite=True)
     assert path.read_bytes() != b"mine"
     path.unlink()
     path.mkdir()
     with pytest.raises(FileExistsError, match="not a file"):
-        functions[draw](overwrite=True)
+        draw(sleigh_orbit, path, overwrite=True)
 
 
-def test_a_picture_that_fails_leaves_nothing(
-    sleigh_orbit: nh.Orbit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_picture_that_fails_leaves_nothing(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """On a full disk an older picture stays as it was, and no part of the new one is left."""
-    path = tmp_path / "a.png"
+    path, full = tmp_path / "a.png", OSError(errno.ENOSPC, "No space left on device")
     path.write_text("mine")
-
-    def write_half(_: Figure, file: str) -> None:
-        Path(file).write_text("half")
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Figure, "savefig", write_half)
-    with pytest.raises(OSError, match=r"No space left on device\. Nothing at this path was changed"):
+    words = r"No space left on device\. Nothing at this path was changed"
+    with stopped_in("matplotlib.figure.Figure.savefig", full, words):
         sleigh_orbit.plot(str(path), overwrite=True)
     assert [file.read_text() for file in tmp_path.iterdir()] == ["mine"]
 
@@ -137,43 +130,31 @@ SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
 BALANCED = nh.ChaplyginSleigh(2.0, 1.0, 0.0, 0.3)
 
 
-def moved(system: Any, d: np.ndarray) -> nh.LLSystem:
-    """Return the same body in body coordinates d x, with rows of the constraint that are mixed."""
-    rows = np.array([[2.0, 1.0], [-0.5, 1.0]]) @ system.constraint_subspace @ system.group.adjoint(d).T
-    return nh.LLSystem(system.group, d @ system.homogeneous_mass_tensor @ d.T, rows)
-
-
-def _turn(angle: float, shift: float) -> np.ndarray:
-    """Return coordinates of the plane with an origin so far along the blade, and turned."""
-    turn, there = nh.SE(2).exp([angle, 0.0, 0.0]), np.eye(3)
-    there[0, 2] = -shift
-    return turn @ there
-
-
 class Pair(NamedTuple):
-    """A system by name, an equal one, and its body coordinates d x."""
+    """A system by name, and an equal one."""
 
     named: Any
     equal: Any
-    d: np.ndarray
 
-    def runs(self, step: float, steps: int) -> tuple[nh.Orbit, nh.Orbit]:
+    def runs(self, step: float, steps: int) -> list[nh.Orbit]:
         """Run both from one start."""
-        velocity = np.array([0.3, -0.8]) @ self.named.constraint_subspace
-        starts = ((self.named, velocity), (self.equal, self.named.group.adjoint(self.d) @ velocity))
-        one, other = (nh.simulate(nh.discretize(s, step), body_velocity=v, steps=steps) for s, v in starts)
-        return one, other
+        start = {"body_velocity": np.array([0.3, -0.8]) @ self.named.constraint_subspace, "steps": steps}
+        return [nh.simulate(nh.discretize(system, step), **start) for system in self]
+
+
+def _by_matrices(system: Any, rows: list[list[float]]) -> nh.LLSystem:
+    return nh.LLSystem(system.group, system.homogeneous_mass_tensor, rows @ np.asarray(system.constraint_subspace))
 
 
 TOP = nh.SuslovTop(MASS_TENSOR)
 SAME_AXES = {
-    "top": Pair(TOP, nh.LLSystem(nh.SO(3), MASS_TENSOR, annihilator=TOP.annihilator), np.eye(3)),
-    "arrowhead": Pair(nh.SuslovTop(ARROW), nh.SuslovTop.arrowhead(ARROW.diagonal(), ARROW[2, :2]), np.eye(3)),
-    "sleigh": Pair(SLEIGH, nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, [[0, 1, 0], [1, 0, 0]]), np.eye(3)),
-    "balanced sleigh": Pair(BALANCED, moved(BALANCED, np.eye(3)), np.eye(3)),
+    "top": Pair(TOP, nh.LLSystem(nh.SO(3), MASS_TENSOR, annihilator=TOP.annihilator)),
+    "arrowhead": Pair(nh.SuslovTop(ARROW), nh.SuslovTop.arrowhead(ARROW.diagonal(), ARROW[2, :2])),
+    "sleigh": Pair(SLEIGH, _by_matrices(SLEIGH, [[0, 1], [1, 0]])),
+    "balanced sleigh": Pair(BALANCED, _by_matrices(BALANCED, [[2.0, 1.0], [-0.5, 1.0]])),
 }
-TURNED_TOP = Pair(TOP, moved(TOP, nh.SO(3).exp([0.3, -0.7, 0.4])), nh.SO(3).exp([0.3, -0.7, 0.4]))
-TURNED_SLEIGH = Pair(SLEIGH, moved(SLEIGH, _turn(0.6, 0.7)), _turn(0.6, 0.7))
+TURNED_SLEIGH = Pair(SLEIGH, elsewhere(SLEIGH, np.random.default_rng(2)))
+TURNED_TOP = Pair(TOP, elsewhere(TOP, np.random.default_rng(1)))
 EVERY = SAME_AXES | {"turned top": TURNED_TOP, "turned sleigh": TURNED_SLEIGH}
 by_pair = pytest.mark.parametrize("pair", SAME_AXES.values(), ids=SAME_AXES)
 
@@ -192,9 +173,8 @@ def test_values(pair: Pair) -> None:
     """All values of the map, on displacements and, where there is a deltoid, on momenta; trees; counts."""
     one, other = pair.runs(0.5, 3)
     for plane in ("displacements", "momenta")[: 1 + sheet_of(pair.named).has_deltoid]:
-        _same(
-            *(nh.plot.branches(o.motion, displacement=one.displacement[1], plane=plane).principal for o in (one, other))
-        )
+        options = {"displacement": one.displacement[1], "plane": plane}
+        _same(*(nh.plot.branches(each.motion, **options).principal for each in (one, other)))
     trees = [nh.plot.branch_tree(o.motion, nh.branch_tree(o.motion, o.displacement[1], 2)) for o in (one, other)]
     assert np.array_equal(trees[0].counts.get_ydata(), trees[1].counts.get_ydata())
     _same(trees[0].images[1], trees[1].images[1])
@@ -215,9 +195,7 @@ def test_overviews(pair: Pair, tmp_path: Path) -> None:
     assert name.split()[-1] in recognized
     frames = []
     for number, orbit in enumerate(orbits):
-        with Image.open(nh.plot.animate(orbit, tmp_path / f"{number}.gif", frames=2, title="one")) as movie:
-            movie.seek(1)
-            frames.append(np.asarray(movie.convert("RGB"), dtype=int))
+        frames.append(frames_of(nh.plot.animate(orbit, tmp_path / f"{number}.gif", frames=2, title="one"))[1])
     assert np.mean(np.abs(frames[0] - frames[1]).max(axis=-1) > 8) < 1e-3  # shades of a palette may differ
 
 
@@ -241,12 +219,7 @@ def test_blades_by_their_definition(pair: Pair) -> None:
     assert np.allclose(blade.frame @ [*blade.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
 
 
-def test_orbits_of_another_body_are_refused() -> None:
-    """A portrait takes the orbit of an equal system of another class, and none of another body of the same class."""
-    pair = SAME_AXES["sleigh"]
-    orbit = pair.runs(0.5, 3)[0]
-    heavier = nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3)
-    with pytest.raises(ValueError, match=r"`phase_portrait\(orbit=...\)` must be an orbit of the system"):
-        nh.plot.phase_portrait(heavier, orbit)
-    same_rows = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, SLEIGH.constraint_subspace)
-    assert nh.plot.phase_portrait(same_rows, orbit).orbit is not None
+def test_a_portrait_takes_orbits_of_an_equal_system() -> None:
+    """Its class may be another one; orbits of another body are refused: see test_look."""
+    same_rows = _by_matrices(SLEIGH, [[1, 0], [0, 1]])
+    assert nh.plot.phase_portrait(same_rows, SAME_AXES["sleigh"].runs(0.5, 3)[0]).orbit is not None

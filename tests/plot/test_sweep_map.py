@@ -11,7 +11,7 @@ from matplotlib.colors import BoundaryNorm, LogNorm, Normalize, to_rgba
 import nonholo as nh
 from nonholo.plot._sweep_map import borders, is_geometric
 
-A, B, C = np.array([1.0, 2.0, 4.0]), np.array([0.0, 1.0, 2.0, 3.0]), np.array([5.0, 6.0])
+A, B = np.array([1.0, 2.0, 4.0]), np.array([0.0, 1.0, 2.0, 3.0])
 
 
 def _numbers(block: nh.MemberBlock) -> dict[str, Any]:
@@ -29,20 +29,10 @@ def plane(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     return nh.sweep(_numbers, nh.Grid({"a": A, "b": B}), tmp_path_factory.mktemp("plane") / "s.zarr").load()
 
 
-@pytest.fixture(scope="module")
-def space(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
-    """A grid with a third axis."""
-    design = nh.Grid({"a": A, "b": B, "c": C})
-    return nh.sweep(_numbers, design, tmp_path_factory.mktemp("space") / "s.zarr").load()
-
-
 def _drawn(block: nh.MemberBlock) -> dict[str, Any]:
     """Ones and twos, a wide number, and the outcome of the first function."""
-    return {
-        "whole": np.where(block["a"] > 3, 2, 1),
-        "wide": 10 ** block["a"],
-        "outcome": np.where(block["b"] > 2, 1, 0),
-    }
+    a, b = block["a"], block["b"]
+    return {"whole": np.where(a > 3, 2, 1), "wide": 10**a, "outcome": np.where(b > 2, 1, 0)}
 
 
 @pytest.fixture(scope="module")
@@ -193,16 +183,11 @@ def test_bars_of_outcomes(draws: xarray.Dataset) -> None:
     ],
 )
 def test_what_is_refused(
-    plane: xarray.Dataset,
-    space: xarray.Dataset,
-    draws: xarray.Dataset,
-    result: str,
-    arguments: dict[str, str],
-    told: str,
+    plane: xarray.Dataset, draws: xarray.Dataset, result: str, arguments: dict[str, str], told: str
 ) -> None:
     """A quantity or an axis that is not there, an axis twice or too many, no axes, and draws over y alone."""
-    results = {"plane": plane, "space": space, "draws": draws, "nothing": xarray.Dataset()}
-    results["one member"] = plane.isel(a=0, b=0)
+    results = {"plane": plane, "draws": draws, "nothing": xarray.Dataset()}
+    results |= {"one member": plane.isel(a=0, b=0), "space": plane.expand_dims(c=[5.0, 6.0], axis=2)}
     with pytest.raises(ValueError, match=told):
         nh.plot.sweep_map(results[result], **arguments)
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from plot.runs import sleigh_run, top_run
+from plot.runs import along, sleigh_run, top_run
 from refusals import refusals
 
 import nonholo as nh
@@ -50,8 +50,7 @@ def test_cusp_is_where_the_blade_reverses(b: float) -> None:
 def test_no_cusp_without_reversal(velocity: tuple[float, float, float]) -> None:
     """A sleigh whose blade never reverses has no star and nothing enlarged."""
     drawn = nh.plot.blade_track(sleigh_run(velocity, steps=50))
-    assert drawn.cusps is None
-    assert drawn.enlarged is None
+    assert drawn.cusps is drawn.enlarged is None
 
 
 def test_long_runs_are_thinned_but_keep_the_turn() -> None:
@@ -116,8 +115,7 @@ def test_balanced_top_has_one_axis() -> None:
 def test_axes_are_left_out_where_the_orbit_is_not_near() -> None:
     """An orbit in the midst of its transition has neither axis."""
     drawn = nh.plot.body_axis_track(top_run((0.4, 0.9, 0.0), steps=40))
-    assert drawn.axis_before is None
-    assert drawn.axis_after is None
+    assert drawn.axis_before is drawn.axis_after is None
 
 
 PLANAR = {
@@ -135,10 +133,7 @@ def _free(**more: Any) -> LagrangeDAlembert:
 def _orbit(system: LagrangeDAlembert, length: float = 4.0) -> CoordinateOrbit:
     """Return a path of given poses: a curve that turns by one radian."""
     t = np.linspace(0.0, 1.0, 81)
-    q = np.zeros((81, system.dimension))
-    q[:, 0], q[:, 1], q[:, 2] = length * t, length * t**2 / 2, t
-    zeros = np.zeros((81, system.dimension))
-    return CoordinateOrbit(t, q, zeros, zeros, zeros, zeros[:, :0], t + 1, 0 * t, system=system, time_step=0.0125)
+    return along(system, np.stack([length * t, length * t**2 / 2, t], axis=1))
 
 
 def test_outlines_are_at_their_poses() -> None:
@@ -203,25 +198,18 @@ test_what_is_no_drawing_is_refused = refusals(
 )
 
 
-_BARE = {"steps": 5, "reconstruct": False}
+_SLEIGH, _BARE = (0.1, -1.0, 0.0), {"steps": 5, "reconstruct": False}
+_TOP = top_run((0.4, 0.9, 0.0), steps=5)
 # A picture of another body, and of an orbit without poses, says what to do or to draw.
 test_orbits_without_such_a_track_are_refused = refusals(
-    (
-        nh.plot.blade_track,
-        lambda: top_run((0.4, 0.9, 0.0), steps=5),
-        r"a sleigh in the plane. .* `body_axis_track` for a top",
-    ),
-    (nh.plot.blade_track, lambda: sleigh_run((0.1, -1.0, 0.0), **_BARE), "must have poses. .* with reconstruct=True"),
-    (nh.plot.blade_track, lambda: 3, "must be an orbit of a system on a group. Got 3. Pass what `simulate`"),
-    (
-        nh.plot.body_axis_track,
-        lambda: sleigh_run((0.1, -1.0, 0.0), steps=5),
-        r"on SO\(3\). .* Use `blade_track` for a sleigh",
-    ),
+    (nh.plot.blade_track, _TOP, r"a sleigh in the plane. .* `body_axis_track` for a top"),
+    (nh.plot.blade_track, sleigh_run(_SLEIGH, **_BARE), "must have poses. .* with reconstruct=True"),
+    (nh.plot.blade_track, 3, "must be an orbit of a system on a group. Got 3. Pass what `simulate`"),
+    (nh.plot.body_axis_track, sleigh_run(_SLEIGH, steps=5), r"on SO\(3\). .* Use `blade_track` for a sleigh"),
     (
         nh.plot.point_track,
-        lambda: _orbit(_free(coordinates=("u", "y", "a"), heading=None)),
+        _orbit(_free(coordinates=("u", "y", "a"), heading=None)),
         r"point_track\(orbit=...\)` must have coordinates named x and y. Got u, y, a",
     ),
-    ask=lambda draw, run: draw(run()),
+    ask=lambda draw, orbit: draw(orbit),
 )
