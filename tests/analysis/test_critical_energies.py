@@ -159,6 +159,7 @@ def test_a_closed_curve_of_maxima() -> None:
 # What has no such energies is refused, with the place to look at.
 test_refusals = refusals(
     (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
+    (nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.1], np.eye(3)), 0.1), r"Pass .discretize\(SuslovTop"),
     (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
     (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
     ask=lambda discrete: nh.critical_energies(discrete),

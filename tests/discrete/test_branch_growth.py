@@ -189,7 +189,10 @@ SLEIGH, TOP = nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.SuslovTop([[1.4, 0.2, 0.5], 
 test_what_has_no_such_words_is_refused = refusals(
     ((nh.discretize(TOP, 0.1), {}), "`branch_tree` counts the images of tops"),
     ((nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), {}), "ChaplyginSleigh, a = 0"),
-    ((nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.0, 0.0], np.eye(3)), 0.1), {}), "plane sleigh"),
+    (
+        (nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.0, 0.0], np.eye(3)), 0.1), {}),
+        r"Got MultidimensionalSleigh\. Pass",
+    ),
     ((nh.discretize(SLEIGH, 0.1, difference="logarithmic"), {}), "map with three branches"),
     ((nh.discretize(SLEIGH, 0.1, order=4), {}), "order 2"),
     ((SLEIGH, {}), "discretized system"),

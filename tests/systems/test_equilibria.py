@@ -292,5 +292,6 @@ def test_energies_of_either_sign() -> None:
 _FREE_BODY = RigidBody(np.diag([1.0, 2.0, 3.0]))
 test_other_systems_are_refused = refusals(
     (lambda: nh.equilibria(nh.discretize(_FREE_BODY, 0.1)), "be a top or a sleigh to have known multipliers. Got Rigi"),
+    (lambda: nh.lyapunov_function(nh.discretize(_FREE_BODY, 0.1)), r"be a top or a sleigh. Got RigidBody"),
     (lambda: nh.lyapunov_function(_FREE_BODY), r"lyapunov_function\(system=\.\.\.\)` must be a top or a sleigh. Got R"),
 )

@@ -47,6 +47,8 @@ def test_the_inertia_along_d_may_be_indefinite_but_not_singular() -> None:
     null = axes[:, 0] / np.sqrt(-values[0]) + axes[:, 2] / np.sqrt(values[2])
     with pytest.raises(ValueError, match=r"inertia along the constraint invertible.*eigenvalues"):
         nh.LLSystem(_GROUP, np.eye(3), [null])
+    with pytest.raises(ValueError, match=r"inertia along the constraint invertible.*eigenvalues \[0"):
+        nh.LLSystem(_GROUP, np.zeros((3, 3)), np.eye(3)[:2])
     assert np.linalg.det(nh.LLSystem(_GROUP, np.eye(3), [null, axes[:, 0]]).constrained_inertia) < 0
 
 
