@@ -7,7 +7,6 @@ import numpy as np
 from PIL import Image, ImageSequence
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import CoordinateOrbit
 
 MASS_TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 
@@ -36,8 +35,10 @@ def run_of(system: nh.SuslovTop, steps: int = 40, speed: float = 0.6, **options:
     return nh.simulate(nh.discretize(system, 0.1), restricted_velocity=velocity, steps=steps, **options)
 
 
-def along(system: Any, q: np.ndarray) -> CoordinateOrbit:
+def along(system: Any, q: np.ndarray) -> Any:
     """Return an orbit of a system in coordinates through given places, in a time of one."""
+    from nonholo.lagrange_dalembert import CoordinateOrbit  # which the core lacks
+
     t = np.linspace(0.0, 1.0, len(q))
     return CoordinateOrbit(t, q, 0 * q, 0 * q, 0 * q, q[:, :0], t + 1, 0 * t, system=system, time_step=t[1])
 

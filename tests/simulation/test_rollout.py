@@ -333,7 +333,7 @@ def test_traced_single_precision_is_refused() -> None:
         jax.jit(lambda v: nh.rollout(SLEIGH, body_velocity=v, steps=2).momentum)(np.zeros(3, np.float32))
 
 
-@pytest.mark.profile("routes", instead="test_tangent_map_of_flows")
+@pytest.mark.profile("routes", instead="test_tangent_maps_are_differences_of_flows")
 @pytest.mark.parametrize("reverse", [False, True], ids=["forward", "reverse"])
 def test_flows_are_differentiated_by_diffrax(reverse: bool) -> None:
     """Through the vector field of a traced body, derivatives by body and start are differences of the flow."""
