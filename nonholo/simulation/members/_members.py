@@ -77,7 +77,7 @@ class Members(Keeper):
         return self.parameters.keys() - {STEP}
 
     @functools.cached_property
-    def joint_system(self) -> System | None:
+    def joint_system(self) -> Any:
         """The systems of all members in one, numbers with an axis of members in front where any of them differ.
 
         None where formulas do not allow it.
