@@ -95,19 +95,32 @@ EVERY = 8
 """A change runs every eighth case of its profiles, others at another number of commits."""
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
-_LONG = {  # examples that compile for long
-    "lagrange_dalembert": "_orbit.GroupOrbit _group_system.GroupLagrangeDAlembert _orbit.CoordinateOrbit",
-    "examples": "_points.particle _cars.two_wheeled_robot _rolling.ball_in_bowl _rolling.tilting_disk",
-    "discrete": "_discretize.consistency_defect",
-    "simulation": "traced.rollout",
-    "ensembles": "_family_task.FamilyTask",
-    "analysis": "_linearize.linearize inverse._fit.fit steering._feedback.tracking_feedback steering._steer.steer",
-    "analysis.locomotion": "_phase.geometric_phase _connection.ShapedBody",
-    "analysis.locomotion._connection": "accessibility local_connection",
-    "analysis.locomotion._connection.LocalConnection": "body_velocity momentum_rate",
-    "plot.geometry": "_curvature.curvature",
-}
-DOCTESTS = {f"nonholo.{room}.{name}": "routes" for room, names in _LONG.items() for name in names.split()}
+DOCTESTS = dict.fromkeys(  # examples that compile for long
+    (
+        "nonholo.analysis._linearize.linearize",
+        "nonholo.analysis.inverse._fit.fit",
+        "nonholo.analysis.locomotion._connection.LocalConnection.body_velocity",
+        "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate",
+        "nonholo.analysis.locomotion._connection.ShapedBody",
+        "nonholo.analysis.locomotion._connection.accessibility",
+        "nonholo.analysis.locomotion._connection.local_connection",
+        "nonholo.analysis.locomotion._phase.geometric_phase",
+        "nonholo.analysis.steering._feedback.tracking_feedback",
+        "nonholo.analysis.steering._steer.steer",
+        "nonholo.discrete._discretize.consistency_defect",
+        "nonholo.ensembles._family_task.FamilyTask",
+        "nonholo.examples._cars.two_wheeled_robot",
+        "nonholo.examples._points.particle",
+        "nonholo.examples._rolling.ball_in_bowl",
+        "nonholo.examples._rolling.tilting_disk",
+        "nonholo.lagrange_dalembert._group_system.GroupLagrangeDAlembert",
+        "nonholo.lagrange_dalembert._orbit.CoordinateOrbit",
+        "nonholo.lagrange_dalembert._orbit.GroupOrbit",
+        "nonholo.plot.geometry._curvature.curvature",
+        "nonholo.simulation.traced.rollout",
+    ),
+    "routes",
+)
 
 
 def command(name: str) -> str:

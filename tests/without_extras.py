@@ -9,7 +9,6 @@ import contextlib
 import functools
 import importlib.abc
 import json
-import operator
 import os
 import re
 import shutil
@@ -107,8 +106,11 @@ def ways() -> dict[str, list[str]]:
     from matrix.abilities import Case
     from matrix.kinds import KINDS, STEPS
 
-    ensemble = lambda case: nh.ensemble(case.discrete, **case.rows, **case.run, steps=STEPS)  # noqa: E731
-    tasks = [operator.attrgetter("orbit"), operator.attrgetter("flow"), ensemble]
+    tasks = [
+        lambda case: case.orbit,
+        lambda case: case.flow,
+        lambda case: nh.ensemble(case.discrete, **case.rows, **case.run, steps=STEPS),
+    ]
     run: Any = Kernel.__call__
     ran: set[str] = set()
     Kernel.__call__ = lambda kernel, *arguments: ran.add("library") or run(kernel, *arguments)

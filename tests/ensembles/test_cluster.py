@@ -33,9 +33,14 @@ PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A cluster of a worker that nobody kills; who needs more adds them."""
     with cluster(tmp_path_factory.mktemp("running"), workers=1) as made:
-        with distributed.Client(made.address, set_as_default=False) as client:
-            client.wait_for_workers(1, timeout=120)
+        _wait_for_a_worker(made.address)
         yield made
+
+
+def _wait_for_a_worker(address: str) -> None:
+    """Wait for the first one: on a busy machine it takes longer to start than a sweep waits without a warning."""
+    with distributed.Client(address, set_as_default=False) as client:
+        client.wait_for_workers(1, timeout=300)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +50,8 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
 
 
 def _in_background(address: str, store: Path) -> Future[xarray.Dataset]:
-    """Start the sweep of `slow` on a cluster, by a client in a thread."""
+    """Start the sweep of `slow` on a cluster that has a worker, by a client in a thread."""
+    _wait_for_a_worker(address)
     pool = ThreadPoolExecutor(1)
     swept = pool.submit(nh.sweep, slow, DESIGN, store, address, block=BLOCK)
     pool.shutdown(wait=False)

@@ -7,10 +7,8 @@ from fuzz.kinds import anything, array, count, thing
 import nonholo as nh
 
 _SL2 = np.array([[[1.0, 0], [0, -1]], [[0, 1.0], [0, 0]], [[0, 0], [1.0, 0]]])
-_OF_VECTORS = (
-    *("hat", "exp", "cayley", "retract", "ad", "angle", "exp_increment", "cayley_increment", "retract_increment"),
-    "dexp_inverse",
-)
+_MAPS = ("exp", "cayley", "retract")
+_OF_VECTORS = (*_MAPS, *(f"{name}_increment" for name in _MAPS), "hat", "ad", "angle", "dexp_inverse")
 _OF_MATRICES = ("log", "inverse", "adjoint", "pose_from_matrix")
 
 

@@ -77,15 +77,15 @@ class Members(Keeper):
         return self.parameters.keys() - {STEP}
 
     @functools.cached_property
-    def joint_system(self) -> Any:
+    def joint_system(self) -> System | None:
         """The systems of all members in one, numbers with an axis of members in front where any of them differ.
 
-        None where formulas do not allow it.
+        None where formulas do not allow it, and in coordinates.
         """
-        if not self.of_system:
-            return self.discrete.system
         if self.in_coordinates:
             return None
+        if not self.of_system:
+            return self.discrete.system
         system = self.discrete.system.inside
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
         return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
