@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[1]
 _PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0")
 # numba's cache does not notice callees in other files, nor the options of callers
 _COMPILED = ("nonholo/kernels/", "nonholo/base/numerics/", "nonholo/base/compiled/")
+_JAX = ROOT / "build" / "tests" / "jax"  # whose entries are named by what they were compiled from
 _LIMIT = 600  # seconds
 _FIRST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 
@@ -53,17 +54,17 @@ def mutants() -> list[Mutant]:
     return [Mutant(name, **row | {"tests": tuple(row["tests"])}) for name, row in rows.items()]
 
 
-def tried(mutant: Mutant, copy: Path, caches: Path) -> tuple[bool, str]:
+def tried(mutant: Mutant, copy: Path, compiled: Path) -> tuple[bool, str]:
     """Apply an error in the copy, run its tests there and take it back; return whether and by what it was caught."""
     if mutant.occurrences(copy) != 1:
         return False, f"DOES NOT APPLY: {mutant.occurrences(copy)} places in {mutant.file}"
     path = copy / mutant.file
     text, before = path.read_text(), path.stat()
     with tempfile.TemporaryDirectory() as fresh:
-        numba = Path(fresh) if mutant.file.startswith(_COMPILED) else caches / "numba"
+        numba = Path(fresh) if mutant.file.startswith(_COMPILED) else compiled
         try:
             path.write_text(text.replace(mutant.old, mutant.new))
-            code, output = _run(copy, caches, numba, *_PYTEST, f"--profile={mutant.profile}", *mutant.tests)
+            code, output = _run(copy, numba, *_PYTEST, f"--profile={mutant.profile}", *mutant.tests)
         finally:
             path.write_text(text)
             os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))  # what was compiled from it is still good
@@ -72,10 +73,9 @@ def tried(mutant: Mutant, copy: Path, caches: Path) -> tuple[bool, str]:
     return False, "SURVIVED" if code == 0 else f"SURVIVED, pytest ended with {code}: {output.splitlines()[-1:]}"
 
 
-def _run(copy: Path, caches: Path, numba: Path, *arguments: str) -> tuple[int | None, str]:
+def _run(copy: Path, numba: Path, *arguments: str) -> tuple[int | None, str]:
     """Run Python on the package of the copy; return its exit status, None after the limit, and what it wrote."""
-    own = {"PYTHONPATH": copy, "NUMBA_CACHE_DIR": numba, "JAX_COMPILATION_CACHE_DIR": caches / "jax"}
-    own |= {"JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": 0, "PYTEST_ADDOPTS": ""}
+    own = {"PYTHONPATH": copy, "NUMBA_CACHE_DIR": numba, "JAX_COMPILATION_CACHE_DIR": _JAX, "PYTEST_ADDOPTS": ""}
     environment, command = os.environ | {name: str(value) for name, value in own.items()}, [sys.executable, *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     try:
@@ -85,14 +85,14 @@ def _run(copy: Path, caches: Path, numba: Path, *arguments: str) -> tuple[int | 
     return done.returncode, done.stdout
 
 
-def _copied(copy: Path, caches: Path) -> None:
+def _copied(copy: Path, numba: Path) -> None:
     """Copy what git tracks, or would, as it is in the working tree; prove that the copy has a package of its own."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout  # noqa: S603
     for name in filter(lambda name: (ROOT / name).is_file(), listed.split("\0")):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, copy / name)
-    found = _run(copy, caches, caches / "numba", "-c", "import nonholo; print(nonholo.__file__)")
+    found = _run(copy, numba, "-c", "import nonholo; print(nonholo.__file__)")
     if found != (0, f"{copy / 'nonholo' / '__init__.py'}\n"):
         raise RuntimeError(f"Not the package of the copy: {found}")
 
@@ -116,12 +116,12 @@ def _all_tried(chosen: list[Mutant], folder: Path) -> int:
     """Try errors on all cores, each core in a copy of its own; return how many were caught."""
     copies: queue.SimpleQueue[Path] = queue.SimpleQueue()
     for core in range(os.cpu_count() or 1):
-        _copied(folder / f"{core}", folder / "caches")
+        _copied(folder / f"{core}", folder / "numba")
         copies.put(folder / f"{core}")
 
     def told(mutant: Mutant) -> bool:
         begun, copy = time.perf_counter(), copies.get()
-        caught, words = tried(mutant, copy, folder / "caches")
+        caught, words = tried(mutant, copy, folder / "numba")
         copies.put(copy)
         sys.stdout.write(f"{mutant.name}: {words}, {time.perf_counter() - begun:.0f} s\n")
         sys.stdout.flush()

@@ -250,8 +250,9 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
         pool = ProcessPoolExecutor(workers or CPU_COUNT, multiprocessing.get_context("spawn"), _begin_worker)
     options = {} if pool is None else {"pool": pool}
     options |= {"chunksize": 1, "callbacks": [(None, None, None, report, None)]}  # of this call, not of all of Dask
+    names = [f"block-{later:04}" for later in reversed(range(_AHEAD))]  # Dask begins with the last name
     try:
-        while wave := [one(block) for block in itertools.islice(blocks, _AHEAD)]:
+        while wave := [one(block, dask_key_name=name) for name, block in zip(names, blocks, strict=False)]:
             dask.compute(*wave, scheduler=scheduler, optimize_graph=False, traverse=False, **options)  # pyright: ignore
     except BrokenProcessPool as failure:
         reason = "A worker process was killed, ran out of memory, or could not start (scripts need a __main__ guard)"

@@ -21,7 +21,7 @@ from waiting import wait_for
 
 import nonholo as nh
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
-from nonholo.ensembles import _scheduling, standing_of
+from nonholo.ensembles import standing_of
 from nonholo.io.places import write_lock
 
 BODY = """
@@ -296,17 +296,9 @@ def test_failed_members_are_told(nonholo: Command) -> None:
 
 @pytest.fixture
 def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
-    """A sweep of 12 members, one a block, that Ctrl-C stopped after four blocks, whichever came first."""
-    attempt, attempts = _scheduling.attempt, itertools.count()
-
-    def interrupted(*arguments: Any) -> Any:
-        if next(attempts) == 4:
-            raise KeyboardInterrupt
-        return attempt(*arguments)
-
-    with monkeypatch.context() as patch:
+    """A sweep of 12 members, one a block, that Ctrl-C stopped after its first four blocks."""
+    with monkeypatch.context() as patch, failing_at(4):
         patch.setattr(nh.EnsembleTask, "block", property(lambda _: 1))
-        patch.setattr(_scheduling, "attempt", interrupted)
         ended = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
     assert_ends(ended, 1, "Stopped at 4 of 12 members", "Resume with: nonholo resume s.zarr")
     return Path("s.zarr")
