@@ -77,7 +77,7 @@ def _summary(name: str) -> str:
 def _beside(name: str) -> str:
     """Return the string that stands below the assignment of a name somewhere in the library."""
     described = re.compile(rf'^{name} = .*\nr?"""(.*?)"""', re.MULTILINE)
-    return next(found[1] for path in INIT.parent.rglob("*.py") if (found := described.search(path.read_text("utf-8"))))
+    return next(match[1] for path in INIT.parent.rglob("*.py") if (match := described.search(path.read_text("utf-8"))))
 
 
 def _index() -> str:

@@ -98,14 +98,14 @@ def _card(name: str) -> str:
     return f"[![{name}](../images/gallery/{name}.png)]({name}.py)<br>{_first_line(name)}"
 
 
-def _study(name: str, told: str) -> str:
-    return f"[![{name}](../images/gallery/{name}.png)]({told})<br>{_first_line(name)} [Script]({name}.py)"
+def _study(name: str, link: str) -> str:
+    return f"[![{name}](../images/gallery/{name}.png)]({link})<br>{_first_line(name)} [Script]({name}.py)"
 
 
 def _first_line(name: str) -> str:
     text = (PAGE.parent / f"{name}.py").read_text("utf-8")
-    found = re.match(r'r?"""(.*?)(?:"""|\n\n)', text, re.DOTALL)
-    return " ".join(found[1].split()) if found else name
+    match = re.match(r'r?"""(.*?)(?:"""|\n\n)', text, re.DOTALL)
+    return " ".join(match[1].split()) if match else name
 
 
 def _grid(cells: list[str]) -> str:

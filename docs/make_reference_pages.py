@@ -39,16 +39,16 @@ def _command_line() -> str:
 def _command(command: Any) -> str:
     """Return what a command does, and a table of what it takes."""
     first, _, more = command.help.partition("\n")
-    rows = [f"| {_spelling(given)} | {_cell(given.help or '')} |" for given in command.params if given.name != "help"]
+    rows = [f"| {_spelling(entry)} | {_cell(entry.help or '')} |" for entry in command.params if entry.name != "help"]
     table = "\n".join(["| takes | |", "|---|---|", *rows]) if rows else ""
     return "\n\n".join(filter(None, [first, _block(more), table]))
 
 
-def _spelling(given: Any) -> str:
-    if given.param_type_name == "argument":
-        return f"`{(given.metavar or given.name.upper()).strip('[]')}`" + ("" if given.required else ", optional")
-    names = [*given.opts, *given.secondary_opts]
-    return f"`{', '.join(names)}" + (f" {given.metavar}`" if given.metavar else "`")
+def _spelling(entry: Any) -> str:
+    if entry.param_type_name == "argument":
+        return f"`{(entry.metavar or entry.name.upper()).strip('[]')}`" + ("" if entry.required else ", optional")
+    names = [*entry.opts, *entry.secondary_opts]
+    return f"`{', '.join(names)}" + (f" {entry.metavar}`" if entry.metavar else "`")
 
 
 def _block(text: str) -> str:

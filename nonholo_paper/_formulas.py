@@ -39,7 +39,7 @@ def _part(part: str, text: str) -> str:
     if "\\" in formula:
         raise ValueError(f"A command of the formula {part} is not known.")
     formula = _FUNCTION.sub(r'\1<mspace width="0.17em"/>', formula.replace("<mo>&#x0007C;</mo>", _BAR))
-    return _STYLED.sub(lambda found: f"<{found[1]}>{_letters(found[2], found[3])}</{found[1]}>", formula)
+    return _STYLED.sub(lambda result: f"<{result[1]}>{_letters(result[2], result[3])}</{result[1]}>", formula)
 
 
 def _letters(style: str, text: str) -> str:

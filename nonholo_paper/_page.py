@@ -64,22 +64,22 @@ def anchor(label: str, number: int) -> str:
         >>> anchor("sus_int", 1), anchor("**", 2)
         ('sus_int', '2a2a-2')
     """
-    plain = re.sub(r"[^\w.-]", lambda found: f"{ord(found[0]):x}", label)
+    plain = re.sub(r"[^\w.-]", lambda result: f"{ord(result[0]):x}", label)
     return plain if number == 1 else f"{plain}-{number}"
 
 
 def _sections(results: Sequence[Result]) -> Iterator[tuple[Section, list[_Card]]]:
-    seen: Counter[str] = Counter()
+    records: Counter[str] = Counter()
     for section, group in itertools.groupby(results, key=lambda result: result.entry.section):
-        yield section, [_card(result, seen) for result in group]
+        yield section, [_card(result, records) for result in group]
 
 
-def _card(result: Result, seen: Counter[str]) -> _Card:
+def _card(result: Result, records: Counter[str]) -> _Card:
     finding = result.entry.finding
-    seen[finding.label] += 1
+    records[finding.label] += 1
     status = "fails" if not result.holds else "correction holds" if finding.verdict.is_erratum else "holds"
     heading = _ADDED.get(finding.verdict, "Right")
-    place = anchor(finding.label, seen[finding.label])
+    place = anchor(finding.label, records[finding.label])
     return _Card(result, place, finding.verdict, heading, status, _embedded(result))
 
 

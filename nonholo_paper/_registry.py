@@ -53,9 +53,9 @@ def select(names: Iterable[str]) -> tuple[Entry, ...]:
         UnknownLabelError: No finding has one of the names; the message lists near ones.
     """
     wanted = set(names)
-    known = {name for entry in entries() for name in entry.names}
-    for name in sorted(wanted - known):
-        near = difflib.get_close_matches(name, sorted(known), n=3, cutoff=0.5)
+    reference = {name for entry in entries() for name in entry.names}
+    for name in sorted(wanted - reference):
+        near = difflib.get_close_matches(name, sorted(reference), n=3, cutoff=0.5)
         remedy = f"Did you mean {' or '.join(near)}?" if near else "The labels are those of docs/paper.md."
         raise UnknownLabelError(f"The paper has no finding {name!r}. {remedy}")
     return tuple(entry for entry in entries() if wanted & set(entry.names))
@@ -65,16 +65,16 @@ def _statements() -> Iterator[list[Entry]]:
     for module in sorted(pkgutil.iter_modules(statements.__path__), key=lambda info: info.name):
         loaded = importlib.import_module(f"{statements.__name__}.{module.name}")
         home = next(section for section in sections() if section.key == module.name.partition("_")[0])
-        found = [value for value in vars(loaded).values() if isinstance(value, Finding)]
-        yield [Entry(finding, _section(finding, home)) for finding in found]
+        result = [value for value in vars(loaded).values() if isinstance(value, Finding)]
+        yield [Entry(finding, _section(finding, home)) for finding in result]
 
 
 def _pictures() -> list[Entry]:
-    found: list[Entry] = []
+    result: list[Entry] = []
     for figure in figures().values():
-        home = found[-1].section if found else sections()[0]
-        found.append(Entry(figure.finding, _section(figure.finding, home), figure))
-    return found
+        home = result[-1].section if result else sections()[0]
+        result.append(Entry(figure.finding, _section(figure.finding, home), figure))
+    return result
 
 
 def _section(finding: Finding, home: Section) -> Section:

@@ -52,13 +52,13 @@ def points(body: Body) -> list[Point]:
 def solid(mass: Number, center: Sequence[Number], moments: Sequence[Number], turn: Matrix) -> list[Point]:
     """Return mass points whose mass tensor about their center has given moments along the columns of `turn`."""
     n = len(center)
-    found = []
+    result = []
     for j, moment in enumerate(moments):
         arm = ctx.sqrt(n * moment / mass)
         for sign in (1, -1):
             place = [center[i] + sign * arm * turn[i, j] for i in range(n)]
-            found.append((mass / (2 * n), ctx.matrix([*place, 1])))
-    return found
+            result.append((mass / (2 * n), ctx.matrix([*place, 1])))
+    return result
 
 
 def homogeneous(body: list[Point]) -> Matrix:
@@ -109,8 +109,8 @@ def velocity_of(group: AbstractMatrixGroup, body: list[Point], rows: Sequence, r
     """Return the admissible velocity with given momenta along the rows."""
     allowed = [hat(group, row) for row in rows]
     inertia = ctx.matrix([[paired(body, X, Y) for Y in allowed] for X in allowed])
-    found = ctx.lu_solve(inertia, ctx.matrix(list(restricted)))
-    return sum((found[i] * X for i, X in enumerate(allowed)), ctx.zeros(group.size))
+    result = ctx.lu_solve(inertia, ctx.matrix(list(restricted)))
+    return sum((result[i] * X for i, X in enumerate(allowed)), ctx.zeros(group.size))
 
 
 def rates(group: AbstractMatrixGroup, body: list[Point], rows: Sequence, velocity: Matrix) -> Vector:

@@ -151,8 +151,8 @@ def refined(J: Matrix, target: Sequence[Number], y: Sequence[complex]) -> Vector
 def successors(name: str, y: tuple[float, float]) -> list[Vector]:
     """Return the tangents of all values of the map after y: the library's, refined in 50 digits; real ones first."""
     J = body(name)
-    found = nh.branches(discrete(J), displacement=array(cayley(y)))
-    starts = [(W[:2, 2] / (1 + W[2, 2]), real) for W, real in zip(found.displacement, found.is_real, strict=True)]
+    result = nh.branches(discrete(J), displacement=array(cayley(y)))
+    starts = [(W[:2, 2] / (1 + W[2, 2]), real) for W, real in zip(result.displacement, result.is_real, strict=True)]
     return [refined(J, turned(J, cayley(y)), [complex(v.real, 0 if real else v.imag) for v in s]) for s, real in starts]
 
 

@@ -32,8 +32,8 @@ class Top:
         bordered[:3, :3] = self.inertia
         for i in range(3):
             bordered[i, 3], bordered[3, i] = -self.axis[i], self.axis[i]
-        found = ctx.lu_solve(bordered, twin.column([*twin.coad(nh.SO(3), list(w), self.inertia * w), 0]))
-        return found[:3], found[3]
+        result = ctx.lu_solve(bordered, twin.column([*twin.coad(nh.SO(3), list(w), self.inertia * w), 0]))
+        return result[:3], result[3]
 
 
 GENERIC = Top(ctx.matrix([[2.25, -0.25, -0.5], [-0.25, 2.75, 0.25], [-0.5, 0.25, 2.5]]), twin.column([0.6, 0.0, 0.8]))

@@ -141,7 +141,7 @@ def exp_derivative(X: Matrix, Y: Matrix) -> Matrix:
 
 def rank(rows: Matrix) -> int:
     """Return the rank of a matrix with entries of size one, by elimination with full pivoting."""
-    left, found = rows.copy(), 0
+    left, result = rows.copy(), 0
     while left.rows and left.cols:
         size, i, j = max((abs(left[i, j]), i, j) for i in range(left.rows) for j in range(left.cols))
         if size < ctx.mpf(10) ** (-ctx.dps // 2):
@@ -149,13 +149,13 @@ def rank(rows: Matrix) -> int:
         keep = [(r, c) for r in range(left.rows) if r != i for c in range(left.cols) if c != j]
         entries = [left[r, c] - left[r, j] * left[i, c] / left[i, j] for r, c in keep]
         width = left.cols - 1
-        found += 1
+        result += 1
         left = (
             ctx.matrix([entries[r * width : (r + 1) * width] for r in range(left.rows - 1)])
             if entries
             else ctx.zeros(0)
         )
-    return found
+    return result
 
 
 def rate(path: Callable[[Number], Matrix], at: Number = 0) -> Matrix:
@@ -179,10 +179,10 @@ def roots(coefficients: Sequence[Number]) -> Vector:
     with ctx.workdps(160):
         monic = [ctx.convert(coefficient) / coefficients[0] for coefficient in coefficients]
         reach = 1 + max(abs(coefficient) for coefficient in monic)
-        found = [reach * ctx.mpc("0.4", "0.9") ** k for k in range(len(monic) - 1)]
+        result = [reach * ctx.mpc("0.4", "0.9") ** k for k in range(len(monic) - 1)]
         for _ in range(2000):
-            moves = [polynomial(monic, x) / ctx.fprod(x - y for y in found if y is not x) for x in found]
-            found = [x - move for x, move in zip(found, moves, strict=True)]
+            moves = [polynomial(monic, x) / ctx.fprod(x - y for y in result if y is not x) for x in result]
+            result = [x - move for x, move in zip(result, moves, strict=True)]
             if max(map(abs, moves)) < ctx.mpf("1e-150") * reach:
                 break
-    return [+x for x in found]
+    return [+x for x in result]

@@ -73,7 +73,7 @@ def _others() -> dict[str, AbstractSystem]:
 def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
     rng = np.random.default_rng(11)
     rotations, motions = mass_tensor(nh.SO(4), rng), mass_tensor(nh.SE(3), rng)
-    found: dict[str, AbstractSystem] = {
+    result: dict[str, AbstractSystem] = {
         "suslov 4": nh.SuslovTop(rotations),
         "suslov 6": nh.SuslovTop(mass_tensor(nh.SO(6), rng)),
         "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
@@ -87,7 +87,7 @@ def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
         "veselova 4": nh.VeselovaTop(rotations),
         "right-invariant on SE(3)": nh.LRSystem(nh.SE(3), motions, random_rows(nh.SE(3), 3, rng)),
     }
-    return {name: (system, 0.7 * rng.normal(size=len(system.constraint_subspace))) for name, system in found.items()}
+    return {name: (system, 0.7 * rng.normal(size=len(system.constraint_subspace))) for name, system in result.items()}
 
 
 GENERAL = _general()

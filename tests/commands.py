@@ -36,9 +36,9 @@ def output_of(result: Result) -> str:
 
 def assert_shows(result: Result, *words: str) -> None:
     """Find words on the standard output of a command that succeeds, wherever lines end."""
-    shown = " ".join(output_of(result).replace("│", " ").split())
+    text = " ".join(output_of(result).replace("│", " ").split())
     for each in words:
-        assert each in shown, shown
+        assert each in text, text
 
 
 def json_of(result: Result) -> dict[str, Any]:

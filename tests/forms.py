@@ -66,19 +66,19 @@ FORMS = {
 def tensor(group: nh.MatrixGroup, rng: np.random.Generator) -> np.ndarray:
     """Draw a mass tensor with J* = J, the mean of a matrix over the powers of the star: four differ at most."""
     J = rng.normal(size=(group.size, group.size))
-    found, inverse = np.zeros_like(J), np.linalg.inv(group.form)
+    result, inverse = np.zeros_like(J), np.linalg.inv(group.form)
     for _ in range(4):
-        found, J = found + J / 4, inverse @ J.T @ group.form
-    return found
+        result, J = result + J / 4, inverse @ J.T @ group.form
+    return result
 
 
 def system(group: nh.MatrixGroup, k: int, rng: np.random.Generator, definite: bool = True) -> nh.LLSystem:
     """Draw a system with a random d of dimension k; its inertia along d positive definite and well conditioned."""
     for _ in range(5000):
-        found = nh.LLSystem(group, tensor(group, rng), rng.normal(size=(k, group.dim)))
-        values = np.linalg.eigvalsh(found.constrained_inertia)
+        result = nh.LLSystem(group, tensor(group, rng), rng.normal(size=(k, group.dim)))
+        values = np.linalg.eigvalsh(result.constrained_inertia)
         if not definite or values[0] > 0.03 * values[-1]:
-            return found
+            return result
     raise RuntimeError(f"no definite inertia on {group}, k = {k}")
 
 

@@ -92,17 +92,17 @@ def _copied(copy: Path, numba: Path) -> None:
     for name in filter(lambda name: (ROOT / name).is_file(), listed.split("\0")):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, copy / name)
-    found = _run(copy, numba, "-c", "import nonholo; print(nonholo.__file__)")
-    if found != (0, f"{copy / 'nonholo' / '__init__.py'}\n"):
-        raise RuntimeError(f"Not the package of the copy: {found}")
+    result = _run(copy, numba, "-c", "import nonholo; print(nonholo.__file__)")
+    if result != (0, f"{copy / 'nonholo' / '__init__.py'}\n"):
+        raise RuntimeError(f"Not the package of the copy: {result}")
 
 
 def main(arguments: list[str]) -> int:
     """Try or list the errors that are named, by room or in full, or all; return 1 if one was not caught."""
-    names, known = set(arguments) - {"--list"}, mutants()
-    if unknown := names - {name for mutant in known for name in (mutant.name, mutant.room)}:
+    names, reference = set(arguments) - {"--list"}, mutants()
+    if unknown := names - {name for mutant in reference for name in (mutant.name, mutant.room)}:
         sys.exit(f"No error is called {', '.join(sorted(unknown))}.")
-    chosen = [mutant for mutant in known if not names or names & {mutant.name, mutant.room}]
+    chosen = [mutant for mutant in reference if not names or names & {mutant.name, mutant.room}]
     if "--list" in arguments:
         sys.stdout.writelines(f"{mutant.name}: {mutant.why}, {mutant.file}\n" for mutant in chosen)
         return 0
@@ -119,7 +119,7 @@ def _all_tried(chosen: list[Mutant], folder: Path) -> int:
         _copied(folder / f"{core}", folder / "numba")
         copies.put(folder / f"{core}")
 
-    def told(mutant: Mutant) -> bool:
+    def report(mutant: Mutant) -> bool:
         begun, copy = time.perf_counter(), copies.get()
         caught, words = tried(mutant, copy, folder / "numba")
         copies.put(copy)
@@ -128,7 +128,7 @@ def _all_tried(chosen: list[Mutant], folder: Path) -> int:
         return caught
 
     with concurrent.futures.ThreadPoolExecutor(copies.qsize()) as pool:
-        return sum(pool.map(told, chosen))
+        return sum(pool.map(report, chosen))
 
 
 if __name__ == "__main__":

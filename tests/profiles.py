@@ -176,10 +176,10 @@ def runs(item: pytest.Item, chosen: set[str]) -> bool:
 
 def changed_files(base: str | None = None) -> list[str] | None:
     """Return the files that differ from the last tag or merge base; None when that is unknown."""
-    known = base or _git("describe", "--tags", "--abbrev=0") or _git("merge-base", "HEAD", "@{upstream}")
-    if not known or _git("rev-parse", known + "^{commit}") == _git("rev-parse", "HEAD"):
+    reference = base or _git("describe", "--tags", "--abbrev=0") or _git("merge-base", "HEAD", "@{upstream}")
+    if not reference or _git("rev-parse", reference + "^{commit}") == _git("rev-parse", "HEAD"):
         return None
-    return _git("diff", "--name-only", known).splitlines()
+    return _git("diff", "--name-only", reference).splitlines()
 
 
 def _git(*arguments: str) -> str:

@@ -98,6 +98,6 @@ def turning_state() -> tuple[float, float, Array, Array]:
     q, v = np.array([0.0, 0.0, 0.0, lean, pitch, steer, 0.0, 0.0]), np.array([0.3 * rates[4], 0.0, *rates])
     with double_precision():
         slip = np.abs(system.constraint_forms(jnp.asarray(q)) @ v).max()
-        found = np.asarray(jax.jit(functools.partial(acceleration, system))(jnp.asarray(q), jnp.asarray(v)))
+        result = np.asarray(jax.jit(functools.partial(acceleration, system))(jnp.asarray(q), jnp.asarray(v)))
     height = ready.conserved["height of the front contact"](q, v)
-    return float(height), float(slip), found[2:], np.array(published)
+    return float(height), float(slip), result[2:], np.array(published)

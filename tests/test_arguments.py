@@ -56,9 +56,9 @@ def test_singular_matrices_of_groups_warn() -> None:
     """What has no inverse gives NaN with the warning of NumPy, its neighbors in a stack their numbers."""
     boosts = nh.MatrixGroup(np.array([[[1.0, 0.0], [0.0, -1.0]]]), form=np.array([[0.0, 1.0], [1.0, 0.0]]))
     with pytest.warns(RuntimeWarning, match="invalid value"):
-        found = boosts.cayley([[2.0], [0.5]])
-    assert np.isnan(found[0]).all()
-    np.testing.assert_array_equal(found[1], boosts.cayley([0.5]))
+        result = boosts.cayley([[2.0], [0.5]])
+    assert np.isnan(result[0]).all()
+    np.testing.assert_array_equal(result[1], boosts.cayley([0.5]))
 
 
 def test_a_huge_element_of_the_algebra_has_an_exponential() -> None:

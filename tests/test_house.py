@@ -56,7 +56,7 @@ def test_what_it_names_is_there(place: str) -> None:
 def test_what_it_counts() -> None:
     """No crowded folder, no long function, no question about the class of a system."""
     crowded = [str(folder) for folder in FOLDERS if len(_boxes(folder)) > (_ROOMS if folder == LIBRARY else _BOXES)]
-    long, asked = [], []
+    long, questions = [], []
     for file in FILES:
         text = file.read_text().splitlines()
         for node in nodes_of(file):
@@ -64,8 +64,8 @@ def test_what_it_counts() -> None:
                 long.append(f"{file}:{node.name}")
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "isinstance":
                 kind = ast.unparse(node.args[1])
-                asked += [f"{file}:{node.lineno}"] * any(kind.endswith(name) for name in _FAMILIES)
-    assert (crowded, long, asked) == ([], [], [])
+                questions += [f"{file}:{node.lineno}"] * any(kind.endswith(name) for name in _FAMILIES)
+    assert (crowded, long, questions) == ([], [], [])
     assert f"at most {_BOXES} files and folders" in PAGE
     assert f"the house itself has {_ROOMS} rooms" in PAGE
     assert f"at most {_LINES} lines of code" in PAGE

@@ -47,10 +47,10 @@ ASKING = dict.fromkeys((*ON_JAX, "step [flat]", "tracking_feedback"), "jax") | {
 
 
 @pytest.mark.profile("faults", keep=["quick*"])
-@pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", ASKING)])
-def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
+@pytest.mark.parametrize(("which", "arguments"), [("quick", CERTIFIED), ("all", ASKING)])
+def test_calls_that_need_an_extra(which: str, arguments: dict[str, str]) -> None:
     """Each public name is there without extras, or asks for JAX; each call works, or asks for the extra it needs."""
-    assert _printed("calls", which) == [dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax"), asked]
+    assert _printed("calls", which) == [dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax"), arguments]
 
 
 COMMANDS = [

@@ -210,20 +210,20 @@ FEW = {
 
 def test_every_public_name_is_asked_for_too_much() -> None:
     """A new name comes with a call that asks for too much, or with the reason why none can."""
-    asked, public = {name.split(",")[0] for name in TOO_MUCH}, set(public_names())
+    limits, public = {name.split(",")[0] for name in TOO_MUCH}, set(public_names())
     drawn = {name for name in public if name.startswith("plot.")} - set(FEW)
-    named = {name for name in public if name.startswith("examples.")} - asked - set(FEW)  # numbers of a body
-    assert asked | set(FEW) | drawn | named == public
-    assert not asked & set(FEW)
+    named = {name for name in public if name.startswith("examples.")} - limits - set(FEW)  # numbers of a body
+    assert limits | set(FEW) | drawn | named == public
+    assert not limits & set(FEW)
 
 
 @pytest.mark.parametrize("name", TOO_MUCH)
 def test_too_much_is_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The refusal names the figure and the limit, comes before any memory is taken, and nothing is at the path."""
     monkeypatch.chdir(tmp_path)
-    call, told = TOO_MUCH[name]
+    call, report = TOO_MUCH[name]
     before = _peak()
-    with pytest.raises(ValueError, match=re.escape(told)) as caught:
+    with pytest.raises(ValueError, match=re.escape(report)) as caught:
         call()
     limits = "must (fit (into memory|on the disk)|(be|have) at most|have matrices|settle|keep)"
     assert re.search(limits, str(caught.value))

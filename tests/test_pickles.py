@@ -47,22 +47,24 @@ def foreign(thing: Any) -> bool:
     return not type(thing).__module__.startswith("nonholo") or isinstance(thing, Figure)
 
 
-def same(one: Any, other: Any, seen: frozenset[int] = frozenset()) -> bool:
+def same(one: Any, other: Any, records: frozenset[int] = frozenset()) -> bool:
     """Tell whether two objects have the same fields, arrays to the last bit, or are of one kind of another library."""
-    if id(one) in seen or one is other:
+    if id(one) in records or one is other:
         return True
     if type(one) is not type(other):
         return False
-    seen |= {id(one)}
+    records |= {id(one)}
     if isinstance(one, dict):
-        return one.keys() == other.keys() and all(same(value, other[name], seen) for name, value in one.items())
+        return one.keys() == other.keys() and all(same(value, other[name], records) for name, value in one.items())
     if isinstance(one, list | tuple):
-        return len(one) == len(other) and all(same(ours, theirs, seen) for ours, theirs in zip(one, other, strict=True))
+        return len(one) == len(other) and all(
+            same(ours, theirs, records) for ours, theirs in zip(one, other, strict=True)
+        )
     if dataclasses.is_dataclass(one):
         names = {x.name for x in dataclasses.fields(one)} - {"minimum"}  # functions of a fit, which it says it loses
-        return all(same(getattr(one, name), getattr(other, name), seen) for name in names)
+        return all(same(getattr(one, name), getattr(other, name), records) for name in names)
     if isinstance(one, functools.partial):
-        return same([one.func, one.args, one.keywords], [other.func, other.args, other.keywords], seen)
+        return same([one.func, one.args, one.keywords], [other.func, other.args, other.keywords], records)
     if hasattr(one, "identical"):  # a dataset
         return bool(one.identical(other))
     if hasattr(one, "__array__"):
@@ -70,19 +72,19 @@ def same(one: Any, other: Any, seen: frozenset[int] = frozenset()) -> bool:
         return ours.dtype == theirs.dtype and ours.tobytes() == theirs.tobytes()
     if isinstance(one, VALUES):
         return bool(one == other)
-    return foreign(one) or same(getattr(one, "__dict__", {}), getattr(other, "__dict__", {}), seen)
+    return foreign(one) or same(getattr(one, "__dict__", {}), getattr(other, "__dict__", {}), records)
 
 
-def computed(thing: Any, seen: set[int]) -> list[str]:
+def computed(thing: Any, records: set[int]) -> list[str]:
     """Return what an object and its fields hold beside their own fields: what was computed and kept."""
-    if id(thing) in seen or isinstance(thing, type) or not type(thing).__module__.startswith("nonholo"):
+    if id(thing) in records or isinstance(thing, type) or not type(thing).__module__.startswith("nonholo"):
         return []
-    seen.add(id(thing))
+    records.add(id(thing))
     kind, own = type(thing), dict(getattr(thing, "__dict__", {}))
     if "recipe" in own:
         return []  # made once, by a function of the library that remembers it
     bad = [name for name in own if "." in name or isinstance(getattr(kind, name, None), functools.cached_property)]
-    return bad + [name for value in own.values() for name in computed(value, seen)]
+    return bad + [name for value in own.values() for name in computed(value, records)]
 
 
 def sent_back(things: list[Any]) -> list[Any]:
@@ -98,7 +100,7 @@ def used() -> dict[str, Any]:
     discrete, wide = nh.discretize(top, 0.5), nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 0.1)
     heavy = nh.Forced(top, nh.Gravity([0.0, 0.0, -1.0], point=[0.1, 0.2, 0.3]))
     slipping = nh.Forced(sleigh, force=nh.Slip(sleigh.annihilator, 0.3))
-    found = {
+    result = {
         "top": nh.simulate(discrete, restricted_velocity=(0.1, 0.2), steps=5),
         "sleigh": nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
         "SO(4)": nh.simulate(wide, restricted_velocity=(0.1, 0.2, 0.3), steps=5),
@@ -107,9 +109,9 @@ def used() -> dict[str, Any]:
         "flow that slips": nh.flow(slipping, body_velocity=(0.1, 0.2, 0.3), times=(0.0, 1.0)),
         "forced": nh.simulate(nh.discretize(heavy, 0.1), restricted_velocity=(0.1, 0.2), steps=5),
     }
-    for orbit in found.values():
+    for orbit in result.values():
         assert orbit.momentum.size  # decoding keeps numbers too
-    return found | {"discretization": discrete, "example": nh.examples.snakeboard()}
+    return result | {"discretization": discrete, "example": nh.examples.snakeboard()}
 
 
 def test_what_was_used_is_pickled_without_what_it_keeps() -> None:
@@ -151,7 +153,7 @@ def examples() -> Iterator[doctest.DocTest]:
 def results(test: doctest.DocTest, request: pytest.FixtureRequest) -> dict[str, Any]:
     """Run an example and return the values of its expressions and names."""
     test.globs["getfixture"] = request.getfixturevalue
-    before, found = dict(test.globs), {}
+    before, result = dict(test.globs), {}
     for example in test.examples:
         if example.options.get(doctest.SKIP):
             continue
@@ -162,8 +164,8 @@ def results(test: doctest.DocTest, request: pytest.FixtureRequest) -> dict[str, 
             except SyntaxError:
                 exec(example.source, test.globs)  # noqa: S102
             else:
-                found[example.source.strip()] = eval(code, test.globs)  # noqa: S307
-    return found | {name: value for name, value in test.globs.items() if before.get(name, found) is not value}
+                result[example.source.strip()] = eval(code, test.globs)  # noqa: S307
+    return result | {name: value for name, value in test.globs.items() if before.get(name, result) is not value}
 
 
 def plain(thing: Any) -> bool:
@@ -186,21 +188,21 @@ def test_every_result_of_every_example(
     for name in refused:
         with pytest.raises((pickle.PicklingError, AttributeError), match=r"<lambda>|forms|lagrangian|action|energy"):
             pickle.dumps(things[name])
-    kept = {name: value for name, value in things.items() if name not in refused}
+    others = {name: value for name, value in things.items() if name not in refused}
     failures = {}
-    for name, value in list(kept.items()):
+    for name, value in list(others.items()):
         try:
             back = pickle.loads(pickle.dumps(value))  # noqa: S301
         except Exception as failure:
             failures[name] = repr(failure)
-            del kept[name]
+            del others[name]
             continue
         for other in (back, copy.deepcopy(value)):
             if computed(other, set()) or not same(value, other):
                 failures[name] = "another"
-    others = sent_back(list(kept.values()))
-    failures |= {name: "sent" for name, other in zip(kept, others, strict=True) if not same(kept[name], other)}
-    print(f"{len(kept)} results, {len(refused)} with functions")  # noqa: T201
+    others = sent_back(list(others.values()))
+    failures |= {name: "sent" for name, other in zip(others, others, strict=True) if not same(others[name], other)}
+    print(f"{len(others)} results, {len(refused)} with functions")  # noqa: T201
     assert not failures, "; ".join(f"{name} ({why})" for name, why in failures.items())
     assert refused == REFUSED
-    assert len(kept) > 200
+    assert len(others) > 200

@@ -15,11 +15,11 @@ from scripts import script
 @pytest.fixture(name="cases")
 def _cases(request: pytest.FixtureRequest) -> dict[str, list[pytest.Item]]:
     """All collected tests of profiles, by name."""
-    found = defaultdict(list)
+    result = defaultdict(list)
     for item in request.config.stash[COLLECTED]:
         if item.get_closest_marker("profile"):
-            found[item.nodeid.split("[")[0]].append(item)
-    return found
+            result[item.nodeid.split("[")[0]].append(item)
+    return result
 
 
 def test_every_profile_has_its_command() -> None:

@@ -67,17 +67,17 @@ SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 
 
 @pytest.mark.parametrize(
-    ("run", "told"),
+    ("run", "message"),
     [(_sweep, ("trying a member", "members", "100%")), (_obstruction, ("orbits", "100%")), (_flow, ("time", "100%"))],
     ids=["sweep", "flow_obstruction", "flow"],
 )
 def test_long_work_shows_what_it_does(
-    run: Callable[..., object], told: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    run: Callable[..., object], message: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Sweeps, also while their first member is tried, and long questions show progress if wanted, else nothing."""
     run(tmp_path)
     assert capsys.readouterr().err == ""
     run(tmp_path, progress=True)
     written = capsys.readouterr().err
-    for word in told:
+    for word in message:
         assert word in written, word

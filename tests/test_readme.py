@@ -47,8 +47,8 @@ MAKER = "benchmarks/figures.py"
 
 def test_the_figures_are_what_the_script_writes() -> None:
     """The page is the one of the figures in the repository: `python benchmarks/figures.py --parts`."""
-    found, fuzz = (json.loads((DOCS / name).read_text()) for name in ("figures.json", "figures-of-fuzz.json"))
-    assert (DOCS / "project" / "figures.md").read_text("utf-8") == script(MAKER).page(found, fuzz)
+    result, fuzz = (json.loads((DOCS / name).read_text()) for name in ("figures.json", "figures-of-fuzz.json"))
+    assert (DOCS / "project" / "figures.md").read_text("utf-8") == script(MAKER).page(result, fuzz)
 
 
 def test_what_it_names_is_there() -> None:

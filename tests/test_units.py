@@ -60,9 +60,9 @@ def test_units_of_mass_and_time_do_not_matter(name: str, unit: float) -> None:
     """Neither outcome nor displacement changes; nothing over- or underflows on the way."""
     for speed in SPEEDS:
         expected = _run(name, speed)
-        for found in (_run(name, speed, mass=unit), _run(name, speed, time=unit)):
-            assert (found.outcome, len(found)) == (expected.outcome, len(expected))
-            np.testing.assert_allclose(found.displacement, expected.displacement, rtol=0, atol=1e-13)
+        for result in (_run(name, speed, mass=unit), _run(name, speed, time=unit)):
+            assert (result.outcome, len(result)) == (expected.outcome, len(expected))
+            np.testing.assert_allclose(result.displacement, expected.displacement, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("far", [1e-151, 1e151])

@@ -42,8 +42,8 @@ BODIES: dict[str, Callable[[float, float], Any]] = {
 
 
 def _conserved(name: str, mass: float, length: float, _: float) -> Answer:
-    found = nh.conserved_momenta(BODIES[name](mass, length))
-    return {"body": found.body.shape, "spatial": found.spatial.shape}
+    result = nh.conserved_momenta(BODIES[name](mass, length))
+    return {"body": result.body.shape, "spatial": result.spatial.shape}
 
 
 def _motion(mass: float, length: float, time: float, **forces: Any) -> tuple[Any, Answer]:
@@ -121,8 +121,8 @@ def _track(mass: float, length: float, time: float) -> Answer:
 def _turned(mass: float, length: float, time: float) -> Answer:
     """Return the torques that turn a top to a place at rest."""
     goal = {"configuration": nh.SO(3).exp([0.4, 0.2, 0.1]), "restricted_velocity": (0.0, 0.0)}
-    found = nh.steer(nh.discretize(nh.SuslovTop(J * mass * length**2), 0.1 * time), {}, goal, steps=20)
-    return {"outcome": str(found.outcome), "torques": found.controls * time**2 / (mass * length**2)}
+    result = nh.steer(nh.discretize(nh.SuslovTop(J * mass * length**2), 0.1 * time), {}, goal, steps=20)
+    return {"outcome": str(result.outcome), "torques": result.controls * time**2 / (mass * length**2)}
 
 
 def _driven(mass: float, length: float, time: float) -> Answer:
@@ -136,8 +136,8 @@ def _driven(mass: float, length: float, time: float) -> Answer:
     speed = 2.0 * length / time
     bounds = {"y": (-0.1 * length, 0.85 * length), "theta": (-0.7, 1.4), "restricted_velocity": (-speed, speed)}
     way = {"via": {12: (0.5 * length, 0.15 * length)}, "obstacles": ([(0.6 * length, 0.45 * length)], 0.2 * length)}
-    found = nh.steer(nh.discretize(body, 0.1 * time), start, goal, steps=30, **way, state_bounds=bounds)
-    return {"outcome": str(found.outcome), "forces": found.controls @ wheels.T * time**2 / (mass * length)}
+    result = nh.steer(nh.discretize(body, 0.1 * time), start, goal, steps=30, **way, state_bounds=bounds)
+    return {"outcome": str(result.outcome), "forces": result.controls @ wheels.T * time**2 / (mass * length)}
 
 
 def _fitted(mass: float, length: float, time: float) -> Answer:
@@ -152,10 +152,10 @@ def _fitted(mass: float, length: float, time: float) -> Answer:
     def sleigh(p: Answer) -> nh.ChaplyginSleigh:
         return nh.ChaplyginSleigh(p.get("mass", mass), p["inertia"], p["a"])
 
-    found = nh.fit(sleigh, record, {"inertia": 5 * size, "a": -0.5 * length})
+    result = nh.fit(sleigh, record, {"inertia": 5 * size, "a": -0.5 * length})
     with pytest.raises(ValueError, match="none of inertia, mass alone"):
         nh.fit(sleigh, record, {"inertia": size, "a": 0.3 * length, "mass": mass})
-    return {"outcome": found.outcome, "numbers": np.array([*found.parameters.values()]) / [size, length]}
+    return {"outcome": result.outcome, "numbers": np.array([*result.parameters.values()]) / [size, length]}
 
 
 def _board(mass: float, length: float, time: float) -> Any:
@@ -249,15 +249,15 @@ def _refused(name: str, *units: float) -> Answer:
 
 def _rest(guess: float, *units: float) -> Answer:
     sizes = np.array([units[1], 1.0])
-    found = nh.equilibria(_cart(*units), configuration=np.array([0.8 + guess, guess]) * sizes)
-    return {"place": found.configuration / sizes, "rates": found.rates * units[2]}
+    result = nh.equilibria(_cart(*units), configuration=np.array([0.8 + guess, guess]) * sizes)
+    return {"place": result.configuration / sizes, "rates": result.rates * units[2]}
 
 
 def _linear(step: float | None, *units: float) -> Answer:
     system: Any = _cart(*units) if step is None else nh.discretize(_cart(*units), step * units[2])
-    found = nh.linearize(system, configuration=np.array([0.8 * units[1], 0.0]))
-    rates = found.eigenvalues if step else found.eigenvalues * units[2]
-    return {"names": found.names, "ignorable": found.ignorable, "rates": rates}
+    result = nh.linearize(system, configuration=np.array([0.8 * units[1], 0.0]))
+    rates = result.eigenvalues if step else result.eigenvalues * units[2]
+    return {"names": result.names, "ignorable": result.ignorable, "rates": rates}
 
 
 def _critical(mass: float, length: float, time: float) -> Answer:
@@ -283,8 +283,8 @@ def _phase(make: Callable[..., Any], momentum: list[float], *units: float) -> An
         return jnp.array([0.4 * jnp.sin(time), 0.5 * jnp.sin(2 * time)])
 
     connection = nh.local_connection(make(*units).system)
-    found = nh.geometric_phase(connection, gait, momentum=np.array(momentum) * mass * length)
-    poses = np.stack([found.holonomy, found.area_rule, found.configuration[-1]])
+    result = nh.geometric_phase(connection, gait, momentum=np.array(momentum) * mass * length)
+    poses = np.stack([result.holonomy, result.area_rule, result.configuration[-1]])
     poses[:, :2, 2] /= length
     return {"momenta": connection.momentum_components, "poses": poses}
 

@@ -34,8 +34,8 @@ def _undefined(file: Path) -> set[str]:
     """Return what a library of Linux asks of whoever loads it."""
     assert b"GLIBC" not in file.read_bytes()
     tool = shutil.which("nm") or pytest.skip("no nm here")
-    told = subprocess.run([tool, "-D", "--undefined-only", file], capture_output=True, text=True, check=True)  # noqa: S603
-    return {line.split()[-1] for line in told.stdout.splitlines()}
+    report = subprocess.run([tool, "-D", "--undefined-only", file], capture_output=True, text=True, check=True)  # noqa: S603
+    return {line.split()[-1] for line in report.stdout.splitlines()}
 
 
 def _wheel(machine: str, folder: Path) -> Path:
@@ -121,10 +121,10 @@ def test_a_browser_runs_it_with_the_same_bits(tmp_path: Path) -> None:
     (packages / "scipy.py").touch()
     shutil.unpack_archive(_wheel("python", tmp_path / "wheels"), tmp_path / "wheel", "zip")
     (tmp_path / "run.mjs").write_text(IN_NODE)
-    found = subprocess.run([node, "run.mjs", PROGRAM], cwd=tmp_path, capture_output=True, text=True, check=True)  # noqa: S603
+    result = subprocess.run([node, "run.mjs", PROGRAM], cwd=tmp_path, capture_output=True, text=True, check=True)  # noqa: S603
     here: dict[str, str] = {}
     exec(PROGRAM, here)  # noqa: S102
-    assert found.stdout.split()[-1] == here["bits"]
+    assert result.stdout.split()[-1] == here["bits"]
 
 
 RELEASE: Any = script(".ci/release.py")

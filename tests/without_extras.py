@@ -53,13 +53,13 @@ def extra_of(missing: MissingExtraError) -> str:
 
 def names() -> dict[str, str]:
     """Return the extras that public names ask for."""
-    asked = {}
+    extras = {}
     for name in dir(nh):
         try:
             getattr(nh, name)
         except MissingExtraError as missing:
-            asked[name] = extra_of(missing)
-    return asked
+            extras[name] = extra_of(missing)
+    return extras
 
 
 def _home_of(name: str, *_: Any, **__: Any) -> Any:
@@ -82,7 +82,7 @@ def calls(which: str) -> list[dict[str, str]]:
         except (MissingExtraError, AttributeError):
             setattr(calls_systems, group, list)
     chosen = {name: call for name, call in all_calls().items() if which == "all" or not (call.slow or call.stores)}
-    asked = {}
+    extras = {}
     with tempfile.TemporaryDirectory() as folder:
         shelf = Path(folder) / "shelf"
         shelf.mkdir()
@@ -97,8 +97,8 @@ def calls(which: str) -> list[dict[str, str]]:
                 try:
                     call()
                 except MissingExtraError as missing:
-                    asked[name] = extra_of(missing)
-    return [homeless, asked]
+                    extras[name] = extra_of(missing)
+    return [homeless, extras]
 
 
 def ways() -> dict[str, list[str]]:
@@ -115,21 +115,21 @@ def ways() -> dict[str, list[str]]:
     ran: set[str] = set()
     Kernel.__call__ = lambda kernel, *arguments: ran.add("library") or run(kernel, *arguments)
     Kernel.dispatcher = property(lambda kernel: ran.add("Python") or kernel.py_func)
-    told: dict[str, list[str]] = {}
+    report: dict[str, list[str]] = {}
     for kind in KINDS:
-        told[kind] = []
+        report[kind] = []
         for task in tasks:
             ran.clear()
             try:
                 task(Case(kind))
-                told[kind].append(min(ran, default="no kernels"))  # "Python" comes first
+                report[kind].append(min(ran, default="no kernels"))  # "Python" comes first
             except MissingExtraError as missing:
-                told[kind].append(f"extra `{extra_of(missing)}`")
+                report[kind].append(f"extra `{extra_of(missing)}`")
             except ModuleNotFoundError as missing:  # of the user's own import
-                told[kind].append(f"your own {missing.name}")
+                report[kind].append(f"your own {missing.name}")
             except ValueError:  # see the table of what works with what
-                told[kind].append("")
-    return told
+                report[kind].append("")
+    return report
 
 
 if __name__ == "__main__":

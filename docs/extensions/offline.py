@@ -22,8 +22,8 @@ def loaded_from_elsewhere(site: Path) -> list[str]:
 
 
 def _check(app: Any, exception: Exception | None) -> None:
-    if exception is None and app.builder.format == "html" and (found := loaded_from_elsewhere(Path(app.outdir))):
-        raise ValueError("The site must load nothing from elsewhere. Got\n" + "\n".join(found))
+    if exception is None and app.builder.format == "html" and (result := loaded_from_elsewhere(Path(app.outdir))):
+        raise ValueError("The site must load nothing from elsewhere. Got\n" + "\n".join(result))
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -29,6 +29,6 @@ def draw() -> Figure:
     """Draw the middle of the ball in space and as it is seen from the table, and the energy."""
     orbit = run()
     x, y = orbit.configuration[:, :2].T
-    seen = (x + 1j * y) * np.exp(-1j * orbit.time)
-    paths = [Curve(x, y, "in space"), Curve(seen.real, seen.imag, "from the table")]
+    relative = (x + 1j * y) * np.exp(-1j * orbit.time)
+    paths = [Curve(x, y, "in space"), Curve(relative.real, relative.imag, "from the table")]
     return card("Ball on a turntable", paths, [Curve(orbit.time, orbit.energy)], axis=("time", "energy"))

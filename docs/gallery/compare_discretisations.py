@@ -121,8 +121,8 @@ def momentum_errors(
     runs = (
         nh.simulate(discrete, restricted_velocity=velocity / n, steps=n * steps, save_every=n * steps) for n in finer
     )
-    found = [n * run.restricted_momentum[-1] for n, run in zip(finer, runs, strict=True)]
-    return np.abs(np.array(found) - exact.restricted_momentum[-1]).max(axis=1)
+    result = [n * run.restricted_momentum[-1] for n, run in zip(finer, runs, strict=True)]
+    return np.abs(np.array(result) - exact.restricted_momentum[-1]).max(axis=1)
 
 
 def measured(first: str, second: str, steps: int = 250) -> Figures:
@@ -135,30 +135,30 @@ def measured(first: str, second: str, steps: int = 250) -> Figures:
 
 def tracks(steps: int = 300) -> dict[str, nh.Orbit]:
     """Return the orbits with the matrix difference whose paths are drawn, and the continuous one."""
-    found = {
+    result = {
         name: nh.simulate(discretized("matrix", name), restricted_velocity=VELOCITY, steps=steps) for name in PATHS
     }
     times = np.linspace(0.0, steps * TIME_STEP, 10 * steps + 1)
-    return found | {"flow": nh.flow(body(), restricted_velocity=VELOCITY, times=times)}
+    return result | {"flow": nh.flow(body(), restricted_velocity=VELOCITY, times=times)}
 
 
 def published(steps: int = 10) -> dict[str, np.ndarray]:
     """Return momentum errors of the Suslov top on exp d: the difference that is consistent with it, and the other."""
-    found = {}
+    result = {}
     for label, name in PUBLISHED.items():
         discrete = nh.discretize(top(), TIME_STEP, name, "exponential")
-        found[label] = momentum_errors(discrete, TOP_VELOCITY, steps, FINER)
-    return found
+        result[label] = momentum_errors(discrete, TOP_VELOCITY, steps, FINER)
+    return result
 
 
 def published_drift(steps: int = 250) -> dict[str, float]:
     """Return the ranges of the relative energy errors of the same two."""
-    found = {}
+    result = {}
     for label, name in PUBLISHED.items():
         discrete = nh.discretize(top(), TIME_STEP, name, "exponential")
         energy = nh.simulate(discrete, restricted_velocity=TOP_VELOCITY, steps=steps).energy
-        found[label] = float(np.ptp(energy / energy[0]))
-    return found
+        result[label] = float(np.ptp(energy / energy[0]))
+    return result
 
 
 def row(first: str, second: str, figures: Figures) -> str:
@@ -212,8 +212,8 @@ def _draw_phases(axes: Axes, momenta: dict[str, np.ndarray]) -> None:
 
 def _draw_published(axes: Axes, errors: dict[str, np.ndarray], drifts: dict[str, float]) -> None:
     steps = TIME_STEP / np.array(FINER)
-    for (label, found), color, mark in zip(errors.items(), ("#0072b2", "#e69f00"), "os", strict=True):
-        axes.loglog(steps, found, f"{mark}-", color=color, label=f"{label}\nenergy within {drifts[label]:.0e}")
+    for (label, result), color, mark in zip(errors.items(), ("#0072b2", "#e69f00"), "os", strict=True):
+        axes.loglog(steps, result, f"{mark}-", color=color, label=f"{label}\nenergy within {drifts[label]:.0e}")
     axes.loglog(steps, 0.15 * errors[label][0] * (steps / steps[0]) ** 2, "--", color="#6b7078", label="slope 2")
     axes.set(title="Suslov top, after arXiv:1605.02666", xlabel="time step", ylabel="momentum error at t = 2")
     axes.set_xticks(steps, [f"{step:g}" for step in steps])

@@ -74,12 +74,12 @@ def draw_folds(axes: Axes, resolution: int) -> None:
 def draw_distances(axes: Axes, resolution: int) -> None:
     """Draw the fold distance of all real values along the ray."""
     for size in np.linspace(0.02, 2.33, resolution):
-        found = nh.displacements_over(TOP, size * RAY)
-        for index in np.flatnonzero(found.is_real):
+        result = nh.displacements_over(TOP, size * RAY)
+        for index in np.flatnonzero(result.is_real):
             look: Any = {"color": theme.UNSTABLE, "markerfacecolor": "white", "markersize": 4}
-            if index == found.principal:
+            if index == result.principal:
                 look = {"color": theme.STABLE, "markersize": 4, "zorder": 5}
-            axes.plot(size, found.fold_distance[index], "o", **look)
+            axes.plot(size, result.fold_distance[index], "o", **look)
     axes.plot([], [], "o", color=theme.STABLE, label="principal value")
     axes.plot([], [], "o", color=theme.UNSTABLE, markerfacecolor="white", label="other real values")
     axes.set(ylim=(0.0, None), title="Distance to the fold", xlabel="momentum along the arrow", ylabel="fold distance")

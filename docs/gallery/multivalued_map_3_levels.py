@@ -40,15 +40,15 @@ def numbers() -> dict[str, float]:
 
 def draw_levels(axes: Axes, top: nh.Discretization, title: str) -> None:
     """Draw levels in gray, critical ones in color, and the critical points."""
-    found = nh.critical_energies(top)
-    highest = max(point.energy for point in found.points)
-    critical = {getattr(found, name): look for name, look in CRITICAL.items() if getattr(found, name) is not None}
+    result = nh.critical_energies(top)
+    highest = max(point.energy for point in result.points)
+    critical = {getattr(result, name): look for name, look in CRITICAL.items() if getattr(result, name) is not None}
     energies = [*highest * np.linspace(0.06, 0.96, 9), *critical]
     drawn = nh.plot.invariant_curves(top, axes=axes, energies=energies).levels
     for level, (color, label) in zip(drawn[9:], critical.values(), strict=True):
         level.set(color=color, linewidth=1.8, label=label, zorder=3)
     for kind, look in LOOKS.items():
-        points = [point.half_turn_vector for point in found.points if point.kind == kind]
+        points = [point.half_turn_vector for point in result.points if point.kind == kind]
         places = np.array([side * disc(z) for z in points for side in (1.0, -1.0)])
         axes.scatter(*places.T, s=60, edgecolors=theme.INK, linewidths=1.3, zorder=9, label=kind, **look)
     axes.legend(loc="upper left", bbox_to_anchor=(0.97, 1.0))

@@ -52,37 +52,37 @@ def leading(J: np.ndarray) -> np.ndarray:
     return J / (24 * (1 + J) ** 2)
 
 
-def lost(found: xarray.Dataset) -> tuple[float, float]:
+def lost(results: xarray.Dataset) -> tuple[float, float]:
     """Return which part of the members is lost below the bound, and above it."""
-    ended = found["outcome"].values != 0
-    below = found["time_step"].values < bound(found["inertia"].values)[:, None]
+    ended = results["outcome"].values != 0
+    below = results["time_step"].values < bound(results["inertia"].values)[:, None]
     return float(ended[below].mean()), float(ended[~below].mean())
 
 
-def draw(found: xarray.Dataset) -> Figure:
+def draw(results: xarray.Dataset) -> Figure:
     """Draw the map with both curves, and three of its rows beside the leading term."""
     with matplotlib.rc_context(LOOK):
         figure = Figure(figsize=(13.0, 5.4), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
-        _draw_map(left, found)
-        _draw_rows(right, found)
+        _draw_map(left, results)
+        _draw_rows(right, results)
     return figure
 
 
-def _draw_map(axes: Axes, found: xarray.Dataset) -> None:
-    nh.plot.sweep_map(found, "turning_deviation", x="inertia", y="time_step", axes=axes)
-    J = found["inertia"].values
+def _draw_map(axes: Axes, results: xarray.Dataset) -> None:
+    nh.plot.sweep_map(results, "turning_deviation", x="inertia", y="time_step", axes=axes)
+    J = results["inertia"].values
     axes.plot(J, bound(J), color="#d55e00", lw=1.6, label="none is lost below")
     axes.set(xlabel=r"$J/(ma^2)$", ylabel=r"$hu/a$", title="")
     axes.set_title("Part of the flow's turn that is missing", loc="left", pad=26)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2)
 
 
-def _draw_rows(axes: Axes, found: xarray.Dataset) -> None:
-    J = found["inertia"].values
+def _draw_rows(axes: Axes, results: xarray.Dataset) -> None:
+    J = results["inertia"].values
     axes.loglog(J, leading(J), color="#c3c8d0", lw=5, label=r"$J/(24\,(1 + J)^2)$, in units of $ma^2$")
     for step, color in zip((0.2, 1.0, 1.9), COLORS, strict=True):
-        row = found.sel(time_step=step, method="nearest")
+        row = results.sel(time_step=step, method="nearest")
         h = row["time_step"].values.item()
         axes.loglog(J, row["turning_deviation"] / h**2, color=color, lw=1.3, label=f"$hu/a = {h:.2g}$")
     axes.set(xlabel=r"$J/(ma^2)$", title="")

@@ -28,6 +28,6 @@ def draw() -> Figure:
     orbit = run()
     (*_, momentum) = READY.conserved.values()
     middle = orbit.configuration + orbit.displacement / 2
-    kept = Curve(orbit.time, momentum(middle, orbit.body_velocity))
+    momenta = Curve(orbit.time, momentum(middle, orbit.body_velocity))
     path = Curve(*orbit.configuration[:, :2].T)
-    return card("Snakeboard", [path], [kept], axis=("time", "momentum along the constraint"))
+    return card("Snakeboard", [path], [momenta], axis=("time", "momentum along the constraint"))

@@ -53,10 +53,10 @@ def first_folds(count: int) -> np.ndarray:
 
 def angles(r: np.ndarray) -> tuple[np.ndarray, int | None]:
     """Return the step angles of all real displacements over r, and the index of the principal one among them."""
-    found = nh.displacements_over(TOP, r)
-    real = np.flatnonzero(found.is_real)
-    trace = np.trace(found.displacement[real].real, axis1=1, axis2=2)
-    place = None if found.principal is None else int(np.flatnonzero(real == found.principal)[0])
+    result = nh.displacements_over(TOP, r)
+    real = np.flatnonzero(result.is_real)
+    trace = np.trace(result.displacement[real].real, axis1=1, axis2=2)
+    place = None if result.principal is None else int(np.flatnonzero(real == result.principal)[0])
     return np.degrees(np.arccos(np.clip((trace - 1) / 2, -1, 1))), place
 
 
@@ -136,8 +136,8 @@ def draw_fold(resolution: int = 90) -> Figure:
     draw_momenta(left)
     end = end_of_path()
     for s in np.append(np.linspace(0.02, 1.0, resolution), end - np.geomspace(1e-4, 2e-2, 8)):
-        found, principal = angles(s * LONG)
-        for place, angle in enumerate(found):
+        result, principal = angles(s * LONG)
+        for place, angle in enumerate(result):
             look: dict[str, Any] = {"color": theme.UNSTABLE, "markerfacecolor": "white"}
             if place == principal:
                 look = {"color": theme.STABLE}

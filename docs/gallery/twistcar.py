@@ -21,12 +21,12 @@ def run(inertia: float, amplitude: float) -> CoordinateOrbit:
 
 def numbers() -> dict[str, tuple[float, float, float]]:
     """The gain of speed in a period, beside the mean acceleration at small amplitudes."""
-    found = {}
+    result = {}
     for name, inertia, formula in zip(INERTIAS, INERTIAS.values(), (-0.0196759, 0.0324074), strict=True):
         orbit = run(inertia, 0.01)
         speed = along(orbit)
-        found[f"mean acceleration, {name}"] = (float(1e4 * (speed[-1] - speed[0]) / orbit.time[-1]) / 2, formula, 1e-4)
-    return found
+        result[f"mean acceleration, {name}"] = (float(1e4 * (speed[-1] - speed[0]) / orbit.time[-1]) / 2, formula, 1e-4)
+    return result
 
 
 def draw() -> Figure:

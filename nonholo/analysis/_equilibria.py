@@ -27,8 +27,8 @@ class EquilibriumSpectrum:
     Attributes:
         subspace: Rows span the equilibria, shape (m, dim).
         attracting: A body velocity whose positive multiples attract; its negative multiples repel. None if none does.
-        velocity: The attracting velocity with the energy asked for; on a line of which no half attracts either one
-            with it. None on planes that do not attract, and if every admissible velocity stays constant.
+        velocity: The attracting velocity with this energy; on a line of which no half attracts, either one with it.
+            None on planes that do not attract, and if every admissible velocity stays constant.
         rates: Transverse eigenvalues of the flow at `velocity`, sorted; of opposite sign at -`velocity`. All negative
             where it attracts, otherwise of any sign, or complex.
         multipliers: Transverse eigenvalues of one step at the equilibrium with the momenta of `velocity`, in the order
@@ -75,9 +75,9 @@ def equilibria(
     Args:
         system: A left-invariant system, of three admissible directions at most if it is neither a top nor a sleigh, or
             a discretization with difference "matrix", constraint "skew" of a top or a sleigh.
-        energy: Reduced constrained energy of the equilibrium that is looked at; rates grow as its square root.
-        configuration: A configuration near which an equilibrium is looked for; then the energy is left out.
-        body_velocity: A velocity near that of a steady motion; by default states of rest are looked for.
+        energy: Reduced constrained energy of the equilibrium. Rates grow as its square root.
+        configuration: The configuration at which Newton's method begins. Leave out the energy beside it.
+        body_velocity: The velocity at which it begins; without one the result is a state of rest.
 
     Raises:
         ValueError: Another system or discretization, an energy that is not positive, one that no multiple of an

@@ -245,8 +245,8 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
 
         >>> import jax.numpy as jnp
         >>> pendulum = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.cos(q[0]), None, dimension=1)
-        >>> found = nh.linearize(pendulum, configuration=[np.pi])
-        >>> found.names, found.eigenvalues.round(12)
+        >>> motion = nh.linearize(pendulum, configuration=[np.pi])
+        >>> motion.names, motion.eigenvalues.round(12)
         (('q1', "q1'"), array([ 1., -1.]))
     """
     local, _ = local_motion("linearize", system, configuration, body_velocity)
@@ -415,7 +415,7 @@ def critical_values(
         linearization: Maps a value to what `nonholo.linearize` returns there. Where it has fewer states, as at rest,
             those that are missing count as ignorable.
         interval: The least and the largest value.
-        samples: How many values are looked at first.
+        samples: Number of values of the first scan.
 
     Raises:
         ValueError: A function that returns something else, an interval that does not rise, no samples.
@@ -426,8 +426,8 @@ def critical_values(
         >>> weight = nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3])
         >>> top = nh.Forced(nh.RigidBody(np.diag([0.5, 0.5, 0.7])), weight)
         >>> of = lambda spin: nh.linearize(top, body_velocity=(0.0, 0.0, spin))
-        >>> found = nh.critical_values(of, (1.0, 6.0), samples=5)
-        >>> bool(np.allclose(found, 2 * np.sqrt(1.2 * 9.81 * 0.3), rtol=1e-9))
+        >>> spins = nh.critical_values(of, (1.0, 6.0), samples=5)
+        >>> bool(np.allclose(spins, 2 * np.sqrt(1.2 * 9.81 * 0.3), rtol=1e-9))
         True
     """
     function("critical_values(linearization=...)", linearization, "value")

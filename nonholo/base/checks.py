@@ -382,7 +382,7 @@ def checked_name(where: str, value: Any, others: Collection[str] = ()) -> str:
 
 
 def names(where: str, values: Any, count: int | None = None, others: Collection[str] = COLUMNS) -> tuple[str, ...]:
-    """Return different names as a tuple: as many as asked for, or at least one."""
+    """Return different names as a tuple: the required number, or at least one."""
     entries = values if isinstance(values, tuple | list) else ()
     words = {value for value in entries if is_name(value) and value not in others}
     if not entries or len(words) < len(entries) or len(entries) != (count or len(entries)):

@@ -41,7 +41,7 @@ class TracedFunction:
     JAX traces it once. Arrays of other shapes, or in 32 bits, go to the function itself.
 
     Attributes:
-        function: The function itself, asked for its present numbers.
+        function: The function, whose present numbers are read.
         program: The function as JAX traces it, with copies of the arrays that it captures.
         constants: These arrays.
         shape: That of its value.

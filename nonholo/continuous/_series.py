@@ -142,7 +142,7 @@ class Series(NamedTuple):
         return self.decode(revisit_series(self.equations, self.nodes, widths, elapsed * self.unit, *limits))
 
     def looks(self) -> Float[np.ndarray, "looks"]:
-        """Return times since the start at which the state is looked at for events."""
+        """Return times since the start at which events are evaluated."""
         return looked_at([*self.nodes[:, 0, -1], self.end * self.unit], self.unit)
 
     def decode(self, columns: Columns) -> States:

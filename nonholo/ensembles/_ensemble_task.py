@@ -65,8 +65,8 @@ class EnsembleTask:
         >>> task = nh.EnsembleTask(sleigh, steps=100, restricted_velocity=(1.0, 0.2), reductions=["energy_drift"])
         >>> from tempfile import TemporaryDirectory
         >>> with TemporaryDirectory() as folder:
-        ...     found = nh.sweep(task, nh.Grid({"a": [0.1, 0.5], "inertia": [1.0, 2.0, 3.0]}), f"{folder}/sleighs.zarr")
-        ...     dict(found.sizes), float(found["energy_drift"].max()) < 1e-13
+        ...     result = nh.sweep(task, nh.Grid({"a": [0.1, 0.5], "inertia": [1.0, 2.0, 3.0]}), f"{folder}/a.zarr")
+        ...     dict(result.sizes), float(result["energy_drift"].max()) < 1e-13
         ({'a': 2, 'inertia': 3}, True)
     """
 

@@ -54,8 +54,8 @@ class FamilyTask:
         >>> task = nh.FamilyTask(nh.examples.particle, time_step=0.1, steps=20)
         >>> from tempfile import TemporaryDirectory
         >>> with TemporaryDirectory() as folder:
-        ...     found = nh.sweep(task, nh.Grid({"planar_velocity_0": [0.5, 1.0, 2.0]}), f"{folder}/particles.zarr")
-        ...     found["final_configuration"].sel(planar_velocity_0=2.0).values.round(2)
+        ...     result = nh.sweep(task, nh.Grid({"planar_velocity_0": [0.5, 1.0, 2.0]}), f"{folder}/particles.zarr")
+        ...     result["final_configuration"].sel(planar_velocity_0=2.0).values.round(2)
         array([2.89, 2.  , 2.47])
     """
 

@@ -1,6 +1,6 @@
 """The store of a sweep, its blocks and their marks, and the results of tasks, checked and named.
 
-A task that raises is asked again for halves, until the members that fail are known.
+A task that raises is called again with each half of its members, until the failing ones are known.
 """
 
 import collections

@@ -173,8 +173,8 @@ def heavy_suslov_top(
         >>> ready = nh.examples.heavy_suslov_top()
         >>> discrete = nh.discretize(ready.system, 0.01)
         >>> orbit = nh.simulate(discrete, body_velocity=ready.body_velocity, steps=1000)
-        >>> kept = ready.conserved["of the first axis"](orbit.configuration, orbit.body_velocity)
-        >>> bool(np.ptp(kept) < 1e-3)
+        >>> values = ready.conserved["of the first axis"](orbit.configuration, orbit.body_velocity)
+        >>> bool(np.ptp(values) < 1e-3)
         True
     """
     c = np.asarray(stiffness)

@@ -158,7 +158,7 @@ class Chunk(NamedTuple):
     def read(self, *, with_nan: bool = False) -> np.ndarray:
         """Return its numbers; NaN is wrong, unless it may be a result.
 
-        A missing one would be read as its fill value, NaN, so its file is looked for first.
+        A missing one would be read as its fill value, NaN, so the existence of its file is checked first.
 
         Raises:
             DamagedError: The chunk is missing or damaged.
@@ -373,7 +373,7 @@ class BlockStore:
     def checked_mark(self, block: int) -> BlockMark:
         """Return the mark of a block that holds the chunks that were written.
 
-        That each chunk is sound is looked at where it is read.
+        Each chunk is checked when it is read.
         """
         mark = self.mark_of(block)
         self._check_seal(block, mark)

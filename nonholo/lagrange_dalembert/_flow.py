@@ -145,7 +145,7 @@ class Flights(NamedTuple):
     errors: tuple[float | None, float]
 
     def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
-        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        """Return the flow from a state at the requested times since then, the outcome and its message."""
         try:
             orbit = solve(
                 self.system, there.as_start().numbers[1:], there.time[0] + np.union1d(0.0, elapsed), *self.errors

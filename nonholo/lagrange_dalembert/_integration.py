@@ -59,7 +59,7 @@ class Pieces(NamedTuple):
         return float(self.times[0]), float(self.times[-1])
 
     def looks(self) -> np.ndarray:
-        """Return no times beside those of the states, at which the motion is looked at for events."""
+        """Return no times: events are evaluated at those of the states alone."""
         return self.times
 
 

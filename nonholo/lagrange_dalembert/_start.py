@@ -125,7 +125,7 @@ def velocity(
 ) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
     """Return the momentum of a velocity that satisfies the constraint, at which the Lagrangian is regular, and this.
 
-    With `project` it is the admissible one next to the given one in the kinetic energy.
+    With `project` it is the admissible one closest to the value in the kinetic energy.
     """
     where = f"{owner}(body_velocity=...)"
     v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")

@@ -44,7 +44,7 @@ def times_within(span: tuple[float, float], times: Any) -> tuple[Float[np.ndarra
 
 
 def looked_at(ends: Sequence[float], unit: float = 1.0) -> Float[np.ndarray, "looks"]:
-    """Return times at which the state is looked at for events: steps are long, so within them too.
+    """Return times at which events are evaluated, between the states too, because steps are long.
 
     Ends of steps are in another unit of time.
     """
@@ -132,7 +132,7 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     @classmethod
     def of_run(cls: type[SelfT], steps: range, **fields: Any) -> SelfT:
-        """Return the orbit with these numbers of steps, whose outcome is known: nothing is looked at again."""
+        """Return the orbit with these numbers of steps and its known outcome, without another check."""
         orbit = object.__new__(cls)
         vars(orbit).update(fields, steps=steps)
         return orbit

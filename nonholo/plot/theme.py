@@ -185,7 +185,7 @@ def luminance(color: Any) -> float:
 
 
 def _settle(dark: bool | None, paper: Any) -> None:
-    """Choose the colors for a background; one that is not as dark or light as asked for gives way."""
+    """Choose the colors for a background; one that is not dark or light enough is replaced."""
     drawing = _DRAWING.get()
     is_dark_paper = luminance(paper) < _DARK
     drawing.is_dark = is_dark_paper if dark is None else dark

@@ -1,6 +1,6 @@
 """Steps and flows with impacts: up to the wall, the reflection, and the rest, in which there may be more impacts.
 
-At a wall nothing is known of a gap but rounding. So the part of a step that is left is looked at in its halves, down to
+At a wall nothing is known of a gap but rounding. So the rest of the step is halved again and again, down to
 where the body has left the wall; from there on the sign of the gap can be trusted. A flow begins again with the
 reflected momentum.
 """
@@ -162,7 +162,7 @@ class Flights(Protocol):
     """The flows from states of a motion: of a system on a group, or in coordinates."""
 
     def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
-        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        """Return the flow from a state at the requested times since then, the outcome and its message."""
         ...
 
     def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
@@ -178,7 +178,7 @@ class BodyFlights(NamedTuple):
     tolerances: tuple[float, float]
 
     def fly(self, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Outcome, str]:
-        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        """Return the flow from a state at the requested times since then, the outcome and its message."""
         flow, solution = self._flow(there, elapsed)
         return flow, solution.outcome, solution.fault
 

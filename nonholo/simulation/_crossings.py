@@ -142,7 +142,7 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     Args:
         events: The events, by name.
         orbit: The flow.
-        steps: Times at which steps of its solver begin: there, too, its states are looked at.
+        steps: Times at which steps of its solver begin, where events are evaluated too.
     """
     forward = 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
     outputs = forward * orbit.time

@@ -100,7 +100,7 @@ def flow(
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
-        project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
+        project: Start at the admissible configuration and `body_velocity` closest to these in the kinetic energy.
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.

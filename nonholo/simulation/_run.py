@@ -143,7 +143,7 @@ class _Table:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
 
         Whole rows are written in place. A part of a row is written beside them, and so are single steps, each of which
-        is looked at: for events, and on a group that poses leave by rounding.
+        is checked: for events, and on a group that poses leave by rounding.
         """
         past = (step - self.begin) % self.every
         most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)

@@ -46,8 +46,8 @@ def simulate(
     principal branch. It exists for every system with a left-invariant constraint. For tops and sleighs with difference
     "matrix" all values are known: "smallest" and "largest" take the real one with the least or the largest norm of the
     full momentum, "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the
-    saddle's energy; the nearest of three). A function `rule(found, present)` gets the `Branches` and the present W, and
-    returns the index of a real one or None. A tie or a double root ends the run with
+    saddle's energy; the nearest of three). A function `rule(branches, present)` gets the `Branches` and the present W,
+    and returns the index of a real one or None. A tie or a double root ends the run with
     `branch_unverified`.
 
     A discretized `LagrangeDAlembert` runs its own map. It starts at a
@@ -64,7 +64,7 @@ def simulate(
             for compositions (order > 2), whose state is the restricted momentum.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
-        project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
+        project: Start at the admissible configuration and `body_velocity` closest to these in the kinetic energy.
         save_every: Steps between saved states.
         branch: Which value of the map a step takes: "principal", "nearest", "smallest", "largest", "inner", "outer" or
             a function; see above. A start from a velocity or a restricted momentum uses the principal W_0

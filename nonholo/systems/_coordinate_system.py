@@ -21,7 +21,7 @@ else:
 
 
 class _Former:
-    """A method of earlier versions: asked for it raises an error that names the function in its place."""
+    """A method of earlier versions: its use raises an error that names the function in its place."""
 
     def __init__(self, call: str) -> None:
         self.call = call

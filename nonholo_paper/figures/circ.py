@@ -121,7 +121,7 @@ def geometry() -> Measured:
     headings = [float(np.arctan2(line[1], line[0])) for line in lines]
     center = circle[:-1].mean(axis=0)
     before, after = ((heading, *contact) for heading, contact in zip(headings, contacts, strict=True))
-    moved, seen = formulas.discrete_velocities(before, after), formulas.tangent_velocities(before, after)
+    moved, tangents = formulas.discrete_velocities(before, after), formulas.tangent_velocities(before, after)
     gaps = [
         *(
             np.arctan2(chord[1], chord[0]) - heading - sign * DELTA / 2
@@ -129,7 +129,7 @@ def geometry() -> Measured:
         ),
         *(np.linalg.norm(contacts - center, axis=1) - np.linalg.norm(circle - center, axis=1).mean()),
         *(line @ (contact - center) for line, contact in zip(lines, contacts, strict=True)),
-        *(float(x - y) for x, y in zip(moved, seen, strict=True)),
+        *(float(x - y) for x, y in zip(moved, tangents, strict=True)),
         float(formulas.constraint_in_space(before, after)),
         float(formulas.radius(headings[1] - headings[0], moved[0])) - RADIUS,
     ]

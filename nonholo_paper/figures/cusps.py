@@ -48,7 +48,7 @@ def tracks() -> Measured:
     points = np.asarray(drawn.track.get_offsets())
     finer = discrete(TIME_STEP / 2).position
     coarse, fine = (
-        np.abs(found - place).max() for found, place in ((points, flow.position[::2]), (finer, flow.position))
+        np.abs(result - place).max() for result, place in ((points, flow.position[::2]), (finer, flow.position))
     )
     cusps = 0 if drawn.cusps is None else len(np.asarray(drawn.cusps.get_offsets()))
     order = np.log2(coarse / fine)

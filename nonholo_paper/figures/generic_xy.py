@@ -22,13 +22,13 @@ _SPAN = 7.0
 @functools.cache
 def orbits() -> tuple[Orbit, Orbit]:
     """Return the flows; at time zero the momentum is half way between the equilibria."""
-    found = []
+    result = []
     for body in BODIES:
         sleigh = nh.ChaplyginSleigh(*body)
         turning = np.sqrt(float(sleigh.constrained_inertia[1][1]))
         middle = np.linalg.solve(np.asarray(sleigh.frame_map), [turning, 0.0])
         start = nh.flow(sleigh, times=[0.0, -_SPAN], momentum=middle, method="closed_form")
-        found.append(
+        result.append(
             nh.flow(
                 sleigh,
                 times=np.linspace(-_SPAN, _SPAN, 1401),
@@ -37,7 +37,7 @@ def orbits() -> tuple[Orbit, Orbit]:
                 method="closed_form",
             )
         )
-    return found[0], found[1]
+    return result[0], result[1]
 
 
 @functools.cache

@@ -48,8 +48,8 @@ def momentum_dynamics() -> Measured:
             values = formulas.energy_integral(body, *points.T)
             gaps.append(np.ptp(values) / values.max())
             for number in (40, 130, 220, 310):
-                found = limits(nh.ChaplyginSleigh(*body), points[number], np.eye(2))
-                gaps.append(np.abs(found - [unstable, stable]).max())
+                result = limits(nh.ChaplyginSleigh(*body), points[number], np.eye(2))
+                gaps.append(np.abs(result - [unstable, stable]).max())
     return Measured(float(max(gaps)), note="two sleighs, 3 ellipses each, 4 flows on each ellipse")
 
 

@@ -51,11 +51,11 @@ class Foliation:
 def picture() -> Foliation:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(7.6, 6.0), layout="constrained").add_subplot()
-    found = nh.critical_energies(TOP)
+    result = nh.critical_energies(TOP)
     curves = [
         draw_curve(axes, nh.invariant_curve(TOP, energy), color=theme.MUTED, linewidth=0.9) for energy in ENERGIES
     ]
-    saddle, equatorial = float(found.saddle or 0), float(found.equatorial_saddle or 0)
+    saddle, equatorial = float(result.saddle or 0), float(result.equatorial_saddle or 0)
     for energy, color in ((saddle, theme.DISCRETE), (equatorial, theme.COMPONENTS[2])):
         curves.append(draw_curve(axes, nh.invariant_curve(TOP, energy, 1200), color=color, linewidth=1.9, zorder=3))
     axes.plot([], [], color=theme.DISCRETE, label=f"$h^*$: energy {saddle:.3f}")

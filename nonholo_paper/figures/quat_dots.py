@@ -59,12 +59,12 @@ def picture() -> Orbits:
         attracting = curve.over(float(np.arctan2(-J[1, 2], -J[0, 2])))
         points.append(project(attracting[np.argmin(np.linalg.norm(attracting[:, 1:], axis=1))]))
         orbits += [_orbit(axes, energy, side) for side in SIDES]
-    found = np.array(points)
-    ends = 1.15 * np.outer([-1, 1], found[-1])
+    result = np.array(points)
+    ends = 1.15 * np.outer([-1, 1], result[-1])
     axes.plot(*ends.T, color=theme.INK, linewidth=1.0, zorder=2, label=r"equilibria $\mathbb{P}$")
     dots: Any = {"s": 58, "zorder": 7, "linewidths": 1.6}
-    stable = axes.scatter(*found.T, facecolors=theme.STABLE, edgecolors=theme.STABLE, label="stable", **dots)
-    unstable = axes.scatter(*-found.T, facecolors="white", edgecolors=theme.UNSTABLE, label="unstable", **dots)
+    stable = axes.scatter(*result.T, facecolors=theme.STABLE, edgecolors=theme.STABLE, label="stable", **dots)
+    unstable = axes.scatter(*-result.T, facecolors="white", edgecolors=theme.UNSTABLE, label="unstable", **dots)
     axes.set(xlabel="$q_1$", ylabel="$q_2$", title="Discrete dynamics near the origin")
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -34,22 +34,22 @@ def picture() -> MomentumLocusPicture:
     return drawn
 
 
-def quaternions(found: MomentumLocus) -> Any:
+def quaternions(result: MomentumLocus) -> Any:
     """Return q0, q1, q2 of the displacements of a mesh."""
-    z0, z1, z2 = np.moveaxis(found.points, -1, 0)
+    z0, z1, z2 = np.moveaxis(result.points, -1, 0)
     return np.stack([z0, -z2, z1])
 
 
 @statement
 def surface() -> Measured:
     """Compare the mesh with (full) and with the implicit equation, and count what is drawn on it."""
-    found, drawn = locus(), picture()
-    full = np.stack(formulas.momentum(np.array(BODIES["generic"]), quaternions(found)), axis=-1)
+    result, drawn = locus(), picture()
+    full = np.stack(formulas.momentum(np.array(BODIES["generic"]), quaternions(result)), axis=-1)
     ends = np.concatenate([along(line) for line in drawn.double_lines])
     gaps = [
-        np.abs(found.momentum - full).max(),
-        np.abs(found.implicit(found.momentum)).max(),
-        np.abs(ends - found.pinch_points).max(),
+        np.abs(result.momentum - full).max(),
+        np.abs(result.implicit(result.momentum)).max(),
+        np.abs(ends - result.pinch_points).max(),
         float(len(drawn.double_lines) != 3 or drawn.triple_point is None),
     ]
     return Measured(float(max(gaps)), note="7260 points; 3 segments, 6 pinch points, a triple point")

@@ -157,8 +157,8 @@ def horizontal_symmetry() -> Measured:
         [_sheared_slope(q, after, e, last=True) for q, after in itertools.pairwise(path)]
         for e in (_units()[1], _units()[0])
     ]
-    kept, moved = ([p - momenta[0] for p in momenta] for momenta in along)
-    return Measured(max(twin.worst(kept), float(twin.worst(moved) < 0.01)), note="a particle with z' = y x', 3 steps")
+    shift, moved = ([p - momenta[0] for p in momenta] for momenta in along)
+    return Measured(max(twin.worst(shift), float(twin.worst(moved) < 0.01)), note="a particle with z' = y x', 3 steps")
 
 
 @statement
@@ -215,9 +215,9 @@ def indices() -> Measured:
     """Count rows and columns of the multipliers of an orbit; the two printed readings exchange them."""
     steps, forms = 7, len(TOP.forms)
     discrete = nh.discretize(nh.SuslovTop(TOP.mass_tensor), 1.0)
-    found = nh.simulate(discrete, restricted_velocity=(0.25, 0.125), steps=steps).multipliers.shape
-    wrong = np.abs(np.subtract(found, (forms, steps))).max()
-    return Measured(float(np.abs(np.subtract(found, (steps, forms))).max()), float(wrong), "a count")
+    result = nh.simulate(discrete, restricted_velocity=(0.25, 0.125), steps=steps).multipliers.shape
+    wrong = np.abs(np.subtract(result, (forms, steps))).max()
+    return Measured(float(np.abs(np.subtract(result, (steps, forms))).max()), float(wrong), "a count")
 
 
 @statement

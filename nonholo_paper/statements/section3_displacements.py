@@ -138,8 +138,8 @@ def _sleigh() -> nh.ChaplyginSleigh:
 
 def _distance_from_locus(body: Body, p: Matrix) -> float:
     top = nh.SuslovTop(TOP.mass_tensor) if body is TOP else _sleigh()
-    found = nh.displacements_over(nh.discretize(top, 1.0), in_double(body.restrict(p)))
-    return float(np.abs(found.momentum - in_double(p)).max(axis=1).min())
+    result = nh.displacements_over(nh.discretize(top, 1.0), in_double(body.restrict(p)))
+    return float(np.abs(result.momentum - in_double(p)).max(axis=1).min())
 
 
 @statement
@@ -150,6 +150,6 @@ def inverse_legendre() -> Measured:
     for body, system in systems:
         discrete = nh.discretize(system, 1.0)
         for W in displacements(body)[2:]:
-            found = nh.inverse_discrete_legendre(discrete, in_double(body.momentum(W)))
-            defects.append(twin.both(0.0, apart(found, W)))
+            result = nh.inverse_discrete_legendre(discrete, in_double(body.momentum(W)))
+            defects.append(twin.both(0.0, apart(result, W)))
     return Measured(max(defects), note="tops n = 3, 4 and a sleigh, steps of up to more than half a turn")

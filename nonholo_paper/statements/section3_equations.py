@@ -80,8 +80,8 @@ def three_steps() -> Measured:
         orbit = nh.simulate(discrete, restricted_velocity=[0.5, -0.25, 0.125][:k], steps=2)
         W = nh.inverse_discrete_legendre(discrete, orbit.momentum[0])
         arriving = system.group.coadjoint(W, orbit.momentum[0])
-        found = nh.displacements_over(discrete, system.restrict(arriving))
-        points = found.momentum[found.is_real].real
+        result = nh.displacements_over(discrete, system.restrict(arriving))
+        points = result.momentum[result.is_real].real
         chosen = points[np.linalg.norm(points, axis=1).argmin()]
         defects += [abs(chosen - orbit.momentum[1]).max(), abs(system.restrict(chosen - arriving)).max()]
     return Measured(twin.both(0.0, max(defects)), note="tops n = 3, 4 and a sleigh")

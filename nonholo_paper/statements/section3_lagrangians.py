@@ -44,8 +44,8 @@ def approximation() -> Measured:
         with ctx.workdps(200):
             h, X = ctx.mpf(10) ** -60, twin.hat(body.group, twin.numbers(4, body.group.dim, -2, 2))
             g = pose(body, 1)
-            found = general.difference(g, g * twin.exp(h * X), h)
-            defects += [found - X, (found - X) / h - X * X / 2]
+            result = general.difference(g, g * twin.exp(h * X), h)
+            defects += [result - X, (result - X) / h - X * X / 2]
     return Measured(twin.worst(*defects), note="7 bodies, h = 1e-60")
 
 
@@ -89,8 +89,8 @@ def first_momentum() -> Measured:
 def _from_first_argument(body: Body, W: Matrix) -> Matrix:
     """Return -d/de L_d(g e^{e x}, g W), the first form of the definition."""
     g = pose(body, 1)
-    found = slopes(lambda nudge: body.lagrangian((g * nudge) ** -1 * (g * W)), body.group)
-    return twin.column([general.momentum_by_pose(slope) for slope in found])
+    result = slopes(lambda nudge: body.lagrangian((g * nudge) ** -1 * (g * W)), body.group)
+    return twin.column([general.momentum_by_pose(slope) for slope in result])
 
 
 @statement
@@ -100,10 +100,10 @@ def usual_momentum() -> Measured:
     for body in SMALL:
         discrete = nh.discretize(body.system, 1.0)
         for W in displacements(body):
-            found = [_usual(body, pose(body, seed), W) for seed in (1, 2)]
+            result = [_usual(body, pose(body, seed), W) for seed in (1, 2)]
             carried = twin.column(twin.coadjoint(body.group, W, list(body.momentum(W))))
             library = nh.discrete_legendre(discrete, in_double(W), side="right")
-            exact = twin.worst(found[0] - found[1], found[0] - carried)
+            exact = twin.worst(result[0] - result[1], result[0] - carried)
             defects.append(twin.both(exact, apart(library, carried)))
     return Measured(max(defects), note="2 tops and a sleigh, 5 displacements each")
 
@@ -120,9 +120,9 @@ def momentum_definition() -> Measured:
         discrete = nh.discretize(body.system, 1.0)
         for W in displacements(body)[::2]:
             first = _from_first_argument(body, W)
-            found = slopes(lambda nudge, b=body, W=W: b.lagrangian(nudge * W), body.group)
-            second = twin.column([general.momentum_by_displacement(slope) for slope in found])
-            printed = twin.column([general.printed_momentum_by_displacement(slope) for slope in found])
+            result = slopes(lambda nudge, b=body, W=W: b.lagrangian(nudge * W), body.group)
+            second = twin.column([general.momentum_by_displacement(slope) for slope in result])
+            printed = twin.column([general.printed_momentum_by_displacement(slope) for slope in result])
             library = apart(nh.discrete_legendre(discrete, in_double(W)), first)
             right.append(twin.both(twin.worst(first - second), library))
             wrong.append(twin.worst(first - printed))

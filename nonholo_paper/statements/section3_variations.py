@@ -49,11 +49,11 @@ def action_sums() -> Measured:
     right, wrong = [], []
     for body in SMALL:
         poses = sequences.poses(body)
-        found = [g**-1 * g_next for g, g_next in itertools.pairwise(poses)]
-        pairs = zip(found, sequences.displacements(body), strict=True)
+        result = [g**-1 * g_next for g, g_next in itertools.pairwise(poses)]
+        pairs = zip(result, sequences.displacements(body), strict=True)
         right += [body.lagrangian(W) - body.lagrangian(V) for W, V in pairs]
-        right.append(len(found) - (len(poses) - 1))
-        wrong.append(len(found) - (len(poses) - 2))
+        right.append(len(result) - (len(poses) - 1))
+        wrong.append(len(result) - (len(poses) - 2))
     return Measured(twin.worst(right), float(min(wrong)), "a count: N + 1 poses have N displacements")
 
 
@@ -62,17 +62,17 @@ def equivalence() -> Measured:
     """Compare first variations in the forms (i), (iii), (iv) for arbitrary sequences and variations."""
     defects = []
     for body in (*SMALL, TOP_4):
-        found = sequences.displacements(body)
-        gradients = [sequences.slope(body, W) for W in found]
+        result = sequences.displacements(body)
+        gradients = [sequences.slope(body, W) for W in result]
         for seed in (40, 50):
             eta = _variations(body, seed)
             by_definition = _action_rate(body, eta)
             reduced = ctx.fsum(
                 twin.inner(slope, general.displacement_variation(W, *ends))
-                for slope, W, ends in zip(gradients, found, itertools.pairwise(eta), strict=True)
+                for slope, W, ends in zip(gradients, result, itertools.pairwise(eta), strict=True)
             )
             balances = ctx.fsum(
-                general.balance(gradients[k - 1 : k + 1], found[k - 1 : k + 1], eta[k])
+                general.balance(gradients[k - 1 : k + 1], result[k - 1 : k + 1], eta[k])
                 for k in range(1, sequences.STEPS)
             )
             defects += [by_definition - reduced, by_definition - balances]
@@ -84,9 +84,9 @@ def equivalence() -> Measured:
 
 def _stationarity(body: Body) -> float:
     """Return the largest value on d of the equations (iv) along an orbit of the library."""
-    found = [sequences.exactly(W) for W in sequences.orbit(body).displacement]
+    result = [sequences.exactly(W) for W in sequences.orbit(body).displacement]
     balances = []
-    for pair in itertools.pairwise(found):
+    for pair in itertools.pairwise(result):
         gradients = [sequences.slope(body, W) for W in pair]
         balances += [general.balance(gradients, pair, twin.hat(body.group, e)) for e in body.directions]
     return twin.worst(balances)

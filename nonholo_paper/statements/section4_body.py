@@ -40,8 +40,8 @@ def _library_defect(top: tops.Top, w: Matrix, rate: Matrix) -> float:
     """Return the distance of the library's rate of the restricted momenta from one at 50 digits, relative to w^2."""
     rows = top.system.constraint_subspace
     state = np.concatenate([rows @ in_double(top.inertia * w), np.eye(3).ravel()])
-    found = nh.vector_field(top.system)(0.0, state)[:2]
-    return float(abs(found - rows @ in_double(rate)).max() / (1 + twin.dot(w, w)))
+    result = nh.vector_field(top.system)(0.0, state)[:2]
+    return float(abs(result - rows @ in_double(rate)).max() / (1 + twin.dot(w, w)))
 
 
 @statement
@@ -55,7 +55,7 @@ def eliminated_multiplier() -> Measured:
 def eliminated_equation() -> Measured:
     """Compare with the rate by definition."""
     pairs = [(suslov.eliminated(t.inertia, w, t.axis), t.inertia * t.accelerated(w)[0]) for t, w in tops.states()]
-    return Measured(twin.worst(*(found - rate for found, rate in pairs)), note="5 tops, 4 velocities each")
+    return Measured(twin.worst(*(result - rate for result, rate in pairs)), note="5 tops, 4 velocities each")
 
 
 @statement
@@ -63,7 +63,7 @@ def reduced_equation() -> Measured:
     """Compare both with the rate by definition, and the library with the corrected one."""
     right, wrong = [], []
     for top, w in tops.states():
-        rate, found = top.inertia * top.accelerated(w)[0], suslov.ep3_26(top.inertia, w, top.axis)
-        right.append(twin.both(twin.worst(found - rate), _library_defect(top, w, found)))
+        rate, result = top.inertia * top.accelerated(w)[0], suslov.ep3_26(top.inertia, w, top.axis)
+        right.append(twin.both(twin.worst(result - rate), _library_defect(top, w, result)))
         wrong.append(twin.worst(suslov.printed_ep3_26(top.inertia, w, top.axis) - rate))
     return Measured(max(right), max(wrong), "5 tops, 4 velocities each")

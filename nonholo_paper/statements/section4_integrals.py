@@ -36,11 +36,11 @@ def equilibria() -> Measured:
     for top in tops.TOPS:
         line = suslov.cross(top.axis, top.inertia * top.axis)
         defects += list(suslov.ep3_26(top.inertia, line, top.axis)) + list(top.accelerated(line)[0])
-        found = top.system.equilibria().subspace
-        library = [abs(found @ in_double(v)).max() for v in (top.axis, top.inertia * top.axis)]
+        result = top.system.equilibria().subspace
+        library = [abs(result @ in_double(v)).max() for v in (top.axis, top.inertia * top.axis)]
         moved = any(abs(x) > 1e-9 for x in suslov.ep3_26(top.inertia, suslov.cross(top.axis, line), top.axis))
         balanced = top is tops.BALANCED
-        count = abs(len(found) - (2 if balanced else 1)) + (moved == balanced)
+        count = abs(len(result) - (2 if balanced else 1)) + (moved == balanced)
         defects.append(max(twin.both(0.0, max(library)), float(count)))
     return Measured(twin.worst(defects), note="5 tops, one of them balanced")
 
@@ -88,9 +88,9 @@ def limits() -> Measured:
             defects.append(moving - tops.LAST.accelerated(w)[0])
         last, first = (suslov.solution(B, c, 1, phase, side, t) for t in (2000, -2000))
         defects += [last + end, first - end]
-    found = nh.asymptotics(tops.LAST.system)
+    result = nh.asymptotics(tops.LAST.system)
     axis = in_double(_lifted(c / ctx.norm(c)))
-    library = max(abs(found.axis_before - axis).max(), abs(found.axis_after + axis).max())
+    library = max(abs(result.axis_before - axis).max(), abs(result.axis_after + axis).max())
     return Measured(twin.both(twin.worst(*defects), library), note="3 motions at 4 times and both ends")
 
 
@@ -119,9 +119,9 @@ def axes_in_space() -> Measured:
     defects, coinciding = [], 0
     for J in _ALIGNED:
         angle = 2 * ctx.asin(suslov.half_angle_sine(J[0][0] + J[2][2], J[1][1] + J[2][2], J[0][2]))
-        found = _angle_in_space(nh.SuslovTop(J))
-        defects.append(abs(found - float(angle)))
-        coinciding += found < 1e-6
+        result = _angle_in_space(nh.SuslovTop(J))
+        defects.append(abs(result - float(angle)))
+        coinciding += result < 1e-6
     return Measured(max(defects), float(coinciding), "5 bodies; printed: a count of bodies whose axes coincide")
 
 

@@ -43,8 +43,8 @@ def lagrangian() -> Measured:
             w = _skew(n, seed)
             kinetic = ctx.fsum(m * twin.dot(w * r, w * r) for m, r in _points(n)) / 2
             momentum = suslov.inertia(J, w)
-            found = library @ np.array(twin.vee(group, w), dtype=float)
-            apart = abs(found - np.array(twin.vee(group, momentum), dtype=float)).max()
+            result = library @ np.array(twin.vee(group, w), dtype=float)
+            apart = abs(result - np.array(twin.vee(group, momentum), dtype=float)).max()
             defects.append(twin.both(abs(suslov.pairing(momentum, w) / 2 - kinetic), apart / 8))
     return Measured(max(defects), note="6 to 7 mass points, n = 3, 4, 5")
 
@@ -119,6 +119,6 @@ def _library_defect(J: Matrix, x: list[Number]) -> float:
     velocity = np.array(x, dtype=float)
     state = np.concatenate([top.constrained_inertia @ velocity, top.group.identity.ravel()])
     # the rows are e_i ^ e_n for n = 3 too: momenta along them are the entries of the last column
-    found = nh.vector_field(top)(0.0, state)[: len(x)]
+    result = nh.vector_field(top)(0.0, state)[: len(x)]
     exact = in_double(_momentum_rate(J, x))[:-1, -1]
-    return twin.both(0.0, float(abs(found - exact).max()) / (8 + 8 * float(velocity @ velocity)))
+    return twin.both(0.0, float(abs(result - exact).max()) / (8 + 8 * float(velocity @ velocity)))

@@ -145,8 +145,8 @@ def stability() -> Measured:
         m, J, a, _ = body
         rate = ctx.diff(lambda turning, body=body: _turning_rate(body, turning, 1), 0)
         gaps.append(rate + a / (J + m * a**2))
-        found = nh.equilibria(nh.ChaplyginSleigh(*map(float, body)))
-        library.append(np.array(found.rates)[0] / np.array(found.velocity)[1] / float(m) - float(rate))
-        library.append(np.array(found.attracting)[1] - float(ctx.sign(a)))
+        result = nh.equilibria(nh.ChaplyginSleigh(*map(float, body)))
+        library.append(np.array(result.rates)[0] / np.array(result.velocity)[1] / float(m) - float(rate))
+        library.append(np.array(result.attracting)[1] - float(ctx.sign(a)))
         printed.append(max(rate, 0))
     return Measured(twin.both(worst(gaps), worst(library)), worst(printed), "7 bodies, one with a < 0")

@@ -162,6 +162,6 @@ def asymptotic_angle() -> Measured:
         gaps.append(
             ctx.quad(lambda s, f=body, k=kappa: formulas.arch(f, 1, s / k)[0] / k, [-130, -20, 0, 20, 130]) - turn
         )
-        found = nh.asymptotics(nh.ChaplyginSleigh(*map(float, body)))
-        library += [abs(found.heading_turn or 0) - float(turn), abs(found.motion_turn or 0) - float(turn - ctx.pi)]
+        result = nh.asymptotics(nh.ChaplyginSleigh(*map(float, body)))
+        library += [abs(result.heading_turn or 0) - float(turn), abs(result.motion_turn or 0) - float(turn - ctx.pi)]
     return Measured(twin.both(worst(gaps), worst(library)), note="3 bodies, one with a < 0")

@@ -174,8 +174,8 @@ def full_mass_tensor() -> Measured:
         rate = [rate[j] - body.a[j + 1] * rate[-1] for j in range(n - 1)] + [rate[-1]]
         foot = row[-1] + ctx.fdot(row[:-1], body.a[1:])
         for c, gaps in (([body.tensor[0, j] for j in range(1, n)], right), ([0] * (n - 1), wrong)):
-            found = formulas.rates_in_space(body.m, body.a[0], c, row[:-1], foot)
-            gaps.append(worst([x - y for x, y in zip(rate, found, strict=True)]))
+            result = formulas.rates_in_space(body.m, body.a[0], c, row[:-1], foot)
+            gaps.append(worst([x - y for x, y in zip(rate, result, strict=True)]))
     return Measured(max(right), min(wrong), "n = 3, 4")
 
 

@@ -50,17 +50,17 @@ def critical_roots(J: Matrix) -> tuple[Number, Number]:
 
 def critical_points(J: Matrix) -> list[tuple[Number, Vector]]:
     """Return the two critical values off the equator, from low to high, with their points."""
-    found = []
+    result = []
     for mu in critical_roots(J):
         u = data.unit(formulas.critical_direction(J, mu))
-        found.append((mu / 4, _point(u, formulas.ridge(J, u))))
-    return found
+        result.append((mu / 4, _point(u, formulas.ridge(J, u))))
+    return result
 
 
 def _equatorial(J: Matrix) -> tuple[Number, Vector]:
     """Return the highest critical half-turn: the library's, refined, and its value."""
-    known = [p for p in nh.critical_energies(data.discrete(J)).points if p.on_equator]
-    z = max(known, key=lambda p: p.energy).half_turn_vector
+    reference = [p for p in nh.critical_energies(data.discrete(J)).points if p.on_equator]
+    z = max(reference, key=lambda p: p.energy).half_turn_vector
     ratio = ctx.findroot(lambda t: formulas.equatorial_cubic(J, [t, 1]), z[0] / z[1], tol=1e-90, verify=False)
     u = data.unit([ratio, 1])
     return formulas.equatorial_value(J, u), _point(u, ctx.mpf(1))
@@ -75,8 +75,8 @@ def critical_values() -> Measured:
         (low, saddle), (high, center), (side, half_turn) = *critical_points(J), _equatorial(J)
         for value, q in ((low, saddle), (high, center), (side, half_turn)):
             exact += [value - data.energy(J, q), *_slopes(J, q)]
-        known = nh.critical_energies(data.discrete(J))
-        expected = [known.saddle, known.center, known.equatorial_saddle]
+        reference = nh.critical_energies(data.discrete(J))
+        expected = [reference.saddle, reference.center, reference.equatorial_saddle]
         library += [2 * a - b for a, b in zip((low, high, side), expected, strict=True)]
         counts.append(sum(x > 1e-6 for x in (side, low - side, high - low)))
     library += [2 - _saddles_of_a_long_body()]

@@ -133,15 +133,15 @@ def _complex_after(name: str, share: float) -> tuple[int, ...]:
     top = data.discrete(data.body(name))
     (low, _), (high, _) = critical_points(data.body(name))
     curve = nh.invariant_curve(top, float(2 * low + 2 * share * (high - low)), 8)
-    found = (nh.branches(top, displacement=W) for component in curve.displacement for W in component)
-    return tuple(int(values.is_real.sum()) for values in found)
+    result = (nh.branches(top, displacement=W) for component in curve.displacement for W in component)
+    return tuple(int(values.is_real.sum()) for values in result)
 
 
 @statement
 def between() -> Measured:
     """Count real values of the library on two curves of two bodies: none occurs, and two or four."""
     counts = [_complex_after(name, share) for name in data.REGULAR for share in (0.3, 0.7)]
-    facts = [0 in found and set(found) <= {0, 2, 4} and max(found) > 0 for found in counts]
+    facts = [0 in result and set(result) <= {0, 2, 4} and max(result) > 0 for result in counts]
     return Measured(data.lacking(*facts), note="two bodies, two energies")
 
 
@@ -163,5 +163,5 @@ def components() -> Measured:
 def _inside_a_flat_body() -> int:
     """Count inner values, which lie below the saddle, of a momentum above the first fold of a body with D < 3|c|^2."""
     flat = nh.discretize(nh.SuslovTop(_FLAT), 1.0)
-    found = nh.displacements_over(flat, [-0.3268, 0.1668])
-    return found.region.tolist().count("inner") if found.energy > nh.critical_energies(flat).fold else 0
+    result = nh.displacements_over(flat, [-0.3268, 0.1668])
+    return result.region.tolist().count("inner") if result.energy > nh.critical_energies(flat).fold else 0

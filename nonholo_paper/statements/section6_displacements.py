@@ -47,16 +47,16 @@ def symmetries() -> Measured:
 def structure() -> Measured:
     """Evaluate the trace on exponentials, rebuild them from (sp) and the trace, and take reflections that fail."""
     right = [formulas.reflected_trace(_rotation(angle, u)) for angle, u in _arguments()]
-    wrong, known = [], []
+    wrong, reference = [], []
     for n in (3, 4, 5, 6):
         line, space = _reflection(n, n, 1), _reflection(n, n, 3)
         right += [*formulas.asymmetries(line), *formulas.asymmetries(space), formulas.reflected_trace(line)]
         right += list(line - _from_symmetries(line))
         wrong.append(formulas.reflected_trace(space))
-        known += [bool(nh.in_exp_d(data.array(line))), not nh.in_exp_d(data.array(space))]
+        reference += [bool(nh.in_exp_d(data.array(line))), not nh.in_exp_d(data.array(space))]
     wrong.append(formulas.reflected_trace(ctx.diag([-1, -1, 1])))
     return Measured(
-        max(twin.worst(right), data.lacking(*known)), twin.worst(wrong), "reflections in 1 and 3 dimensions"
+        max(twin.worst(right), data.lacking(*reference)), twin.worst(wrong), "reflections in 1 and 3 dimensions"
     )
 
 

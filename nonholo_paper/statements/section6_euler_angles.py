@@ -36,12 +36,12 @@ def _attitude(angles: Vector) -> Matrix:
 @functools.cache
 def _traces() -> list[tuple[Vector, Vector, Vector]]:
     """Return pairs of angles with what the principal moments multiply in minus the trace of displacement and J."""
-    known = []
+    reference = []
     for before, after in _pairs():
         W = _attitude(before).T * _attitude(after)
         factors = [-sum((-W[i, i] if i == which else W[i, i]) for i in range(3)) / 2 for which in range(3)]
-        known.append((before, after, factors))
-    return known
+        reference.append((before, after, factors))
+    return reference
 
 
 def _missed(formula: Callable[[Vector, Vector], Number], which: int) -> Vector:

@@ -43,9 +43,9 @@ def complex_values() -> Measured:
     """Count the values and their distances; compare each level with the eigenvalues of its quadratic form."""
     facts = []
     for name, y in data.STEPS:
-        J, found = data.body(name), data.successors(name, y)
-        facts += [len(found) == 4]
-        facts += [abs(a[0] - b[0]) + abs(a[1] - b[1]) > 1e-2 for k, a in enumerate(found) for b in found[:k]]
+        J, result = data.body(name), data.successors(name, y)
+        facts += [len(result) == 4]
+        facts += [abs(a[0] - b[0]) + abs(a[1] - b[1]) > 1e-2 for k, a in enumerate(result) for b in result[:k]]
         target = data.turned(J, data.cayley(y))
         for i in (0, 1):
             low, middle, high = ctx.eigsy(_form(J, i), eigvals_only=True)
@@ -73,6 +73,6 @@ def small_value() -> Measured:
     """Count the values whose half-angle has a tangent below 0.1 after rotations with tangent 0.01."""
     facts = []
     for name in (*data.REGULAR, "aligned", "tilted rod"):
-        found = data.successors(name, (0.008, -0.006))
-        facts.append(sum(abs(y[0]) + abs(y[1]) < 0.1 for y in found) == 1)
+        result = data.successors(name, (0.008, -0.006))
+        facts.append(sum(abs(y[0]) + abs(y[1]) < 0.1 for y in result) == 1)
     return Measured(data.lacking(*facts), note="four bodies")

@@ -136,22 +136,22 @@ def _along(J: twin.Matrix, point: Vector, direction: Vector, e: twin.Number) -> 
 
 def _distances(J: twin.Matrix, M: Vector) -> np.ndarray:
     """Return the largest differences of a momentum from the pinch points that the library finds."""
-    found = nh.momentum_locus(data.discrete(J), 4).pinch_points
-    return abs(found - data.array(ctx.matrix(M)).ravel()).max(axis=1)
+    result = nh.momentum_locus(data.discrete(J), 4).pinch_points
+    return abs(result - data.array(ctx.matrix(M)).ravel()).max(axis=1)
 
 
 @statement
 def four_images() -> Measured:
     """Refine the library's values to 50 digits: four different real ones; two are the rational ones given."""
     name, y = data.STEPS[2]
-    J, found = data.body(name), data.successors(name, y)
+    J, result = data.body(name), data.successors(name, y)
     target = data.momentum(J, data.cayley(y))
     rational = [[ctx.mpf(-1) / 4, ctx.mpf(-3) / 8], [ctx.mpf(-16) / 13, ctx.mpf(-24) / 13]]
-    momenta = [formulas.momentum(J, data.point_of(v)) for v in found + rational]
+    momenta = [formulas.momentum(J, data.point_of(v)) for v in result + rational]
     missed = [x for M in momenta for x in twin.differences(M[:2], target[:2])]
     B = (twin.trace(J) * ctx.eye(3) - J)[:2, :2]
-    different = all(twin.worst([a[i] - b[i] for i in (0, 1)]) > 0.1 for k, a in enumerate(found) for b in found[:k])
-    real = sum(ctx.im(v[0]) == 0 and ctx.im(v[1]) == 0 for v in found)
+    different = all(twin.worst([a[i] - b[i] for i in (0, 1)]) > 0.1 for k, a in enumerate(result) for b in result[:k])
+    real = sum(ctx.im(v[0]) == 0 and ctx.im(v[1]) == 0 for v in result)
     lacking = data.lacking(different, real == 4, B[0, 0] > 0, ctx.det(B) > 0)
     return Measured(max(twin.worst(missed), lacking), real - 2, "printed: real images above two")
 

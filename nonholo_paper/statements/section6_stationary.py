@@ -97,9 +97,9 @@ def theorem() -> Measured:
     ends, facts = [], []
     for name in data.REGULAR:
         for start in ((0.2, 0.1), (0.1, -0.3), (-0.2, 0.3)):
-            end, kept = _orbit(name, start)
+            end, is_sound = _orbit(name, start)
             ends.append(end)
-            facts.append(kept)
+            facts.append(is_sound)
     wrong = [max(end, 0) for end in ends]
     return Measured(max(twin.worst(missed), data.lacking(*facts, *(end > 0 for end in ends))), max(wrong), "6 orbits")
 
@@ -134,8 +134,8 @@ def _orbit(name: str, start: tuple[float, float]) -> tuple[float, bool]:
     side = np.array(J[0, 2] * q[1] + J[1, 2] * q[2], dtype=np.float64)
     moved = side[np.abs(side) > 1e-9]
     level = np.abs(orbit.energy / orbit.energy[0] - 1).max() < 1e-12
-    kept = bool(np.all(moved * moved[0] > 0)) and abs(side[-1]) < 1e-9 and bool(level)
-    return float(formulas.stability_form(J, [ctx.mpf(x[-1]) for x in q])), kept
+    is_sound = bool(np.all(moved * moved[0] > 0)) and abs(side[-1]) < 1e-9 and bool(level)
+    return float(formulas.stability_form(J, [ctx.mpf(x[-1]) for x in q])), is_sound
 
 
 @statement

@@ -28,11 +28,11 @@ def _hat(body: Body, p_1: Number) -> Number:
 
 def _steps(body: Body, p_theta: Number, p_1: Number) -> list[tuple]:
     """Return for every real displacement over a momentum: its tangent, V_1, V_2 and the next two momenta."""
-    found = []
+    result = []
     for t in real_tangents(body.J, p_theta, _hat(body, p_1)):
         _, V_1, V_2 = formulas.third_step(body, p_1, t)
-        found.append((t, V_1, V_2, *formulas.next_momenta(body, p_theta, p_1, 2 * ctx.atan(t), V_2)))
-    return found
+        result.append((t, V_1, V_2, *formulas.next_momenta(body, p_theta, p_1, 2 * ctx.atan(t), V_2)))
+    return result
 
 
 def _inside(body: Body, p_theta: Number, p_1: Number) -> bool:
@@ -67,8 +67,8 @@ def bi_asymptotic() -> Measured:
         for share in ("0.02", "0.5", "0.98"):
             for angle in ANGLES:
                 p_theta, p_1 = _at(body, bound * ctx.mpf(share), angle)
-                found = _steps(body, p_theta, p_1)
-                failures += len(found) != 1 or found[0][3] * p_theta <= 0 or found[0][4] <= p_1
+                result = _steps(body, p_theta, p_1)
+                failures += len(result) != 1 or result[0][3] * p_theta <= 0 or result[0][4] <= p_1
     library = [gap for body in SLEIGHS[:4] for gap in _limits(body)]
     return Measured(
         twin.both(failures, worst(library) / 10), note="5 bodies, 135 points; library: 8 orbits and their pasts"
@@ -130,8 +130,8 @@ def half_plane() -> Measured:
         below = -(body.J * ctx.mpf("2.5") + 2 * body.m * body.a**2) / body.a  # p_hat = -5/2 J
         for inside, (p_theta, p_1) in [*cases, (False, (body.J / 100, below))]:
             for t, _, _, next_theta, _ in _steps(body, p_theta, p_1):
-                kept = next_theta * p_theta > 0
-                failures += kept != (min(formulas.half_plane(body, _hat(body, p_1), t)) > 0)
-                failures += inside and not kept
-                elsewhere += not kept
+                stays = next_theta * p_theta > 0
+                failures += stays != (min(formulas.half_plane(body, _hat(body, p_1), t)) > 0)
+                failures += inside and not stays
+                elsewhere += not stays
     return Measured(float(failures + (elsewhere == 0)), note="5 bodies, 230 points; beyond the region signs do change")

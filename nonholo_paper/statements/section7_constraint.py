@@ -105,9 +105,9 @@ def constr_omegas() -> Measured:
 def se2_const() -> Measured:
     """Evaluate it on exponentials, and on the displacements that the library gives for a sleigh."""
     gaps = [formulas.half_angle_constraint(*_entries(turn)) for turn in ALL_TURNS]
-    found = nh.displacements_over(nh.discretize(nh.ChaplyginSleigh(1.0, 1.5, 0.3, 0.2), 1.0), [0.1, -0.7])
+    result = nh.displacements_over(nh.discretize(nh.ChaplyginSleigh(1.0, 1.5, 0.3, 0.2), 1.0), [0.1, -0.7])
     library = []
-    for W in found.displacement[found.is_real].real:
+    for W in result.displacement[result.is_real].real:
         library.append(formulas.half_angle_constraint(ctx.atan2(W[1, 0], W[0, 0]), W[0, 2], W[1, 2]))
     return Measured(twin.both(worst(gaps), worst(library)), note="12 exponentials; library: 3 displacements")
 

@@ -94,8 +94,8 @@ def disc_mom_sl() -> Measured:
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
         W = admissible(TURNS[k])
         p = formulas.momentum(body, TURNS[k][0], W[0, 2], W[1, 2])
-        found = nh.discrete_legendre(discrete, np.array(W.tolist(), dtype=float))
-        library += differences([*map(float, p)], found)
+        result = nh.discrete_legendre(discrete, np.array(W.tolist(), dtype=float))
+        library += differences([*map(float, p)], result)
     return Measured(twin.both(worst(gaps), worst(library) / 100), note="8 bodies and displacements; momenta up to 100")
 
 
@@ -123,10 +123,10 @@ def discr_ad_sl() -> Measured:
     gaps, library = [], []
     for k, (before, after) in enumerate(PAIRS):
         W, p = _between(before, after), twin.numbers(721 + k, 3, -2, 2)
-        found = formulas.coadjoint(p, formulas.step_angle(before, after), W[0, 2], W[1, 2])
-        gaps += differences(found, twin.coadjoint(PLANE, W, p))
+        result = formulas.coadjoint(p, formulas.step_angle(before, after), W[0, 2], W[1, 2])
+        gaps += differences(result, twin.coadjoint(PLANE, W, p))
         double = PLANE.coadjoint(np.array(W.tolist(), dtype=float), np.array(p, dtype=float))
-        library += differences([*map(float, found)], double)
+        library += differences([*map(float, result)], double)
     unknown = {"p_omega", "p_1", "p_2"} - {"p_theta", "p_1", "p_2"}
     return Measured(twin.both(worst(gaps), worst(library)), float(len(unknown)), "6 displacements, random momenta")
 

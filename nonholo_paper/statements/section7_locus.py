@@ -68,8 +68,8 @@ def three_preimages() -> Measured:
         p = momentum(body, ctx.matrix([[1, 0, p_1], [0, 1, turning], [0, 0, 1]]))
         gaps.append(_shifted(body, p)[0] - body.a * p[2])
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
-        found = nh.displacements_over(discrete, [float(turning - body.b * p_1), float(p_1)])
-        counts.append(found.multiplicity.sum())
+        result = nh.displacements_over(discrete, [float(turning - body.b * p_1), float(p_1)])
+        counts.append(result.multiplicity.sum())
     return Measured(max(worst(gaps), max(abs(n - 3) for n in counts)), float(4 - max(counts)), "7 bodies")
 
 
@@ -94,8 +94,8 @@ def _real_sines(J: Number, p_theta: Number, p_hat: Number) -> list:
     at = [formulas.cubic_in_sine(J, p_theta, p_hat, z) for z in (-1, 0, 1, 2)]
     even, odd = (at[2] + at[0]) / 2 - at[1], (at[2] - at[0]) / 2
     leading = (at[3] - at[1] - 4 * even - 2 * odd) / 6
-    found = twin.roots([leading, even, odd - leading, at[1]])
-    return [ctx.re(z) for z in found if abs(ctx.im(z)) < ctx.mpf("1e-40")]
+    result = twin.roots([leading, even, odd - leading, at[1]])
+    return [ctx.re(z) for z in result if abs(ctx.im(z)) < ctx.mpf("1e-40")]
 
 
 def _region(J: Number, p_theta: Number, p_hat: Number) -> str:
@@ -134,10 +134,10 @@ def surface_signs() -> Measured:
 def proof_of_signs() -> Measured:
     """Find the angles over a point of a line of tangency: one is a right angle, two are not. Printed counts letters."""
     J, p_theta = ctx.mpf("0.9"), ctx.mpf("0.4")
-    found = real_tangents(J, p_theta, p_theta - J)
-    right_angles = sum(abs(t - 1) < ctx.mpf("1e-40") for t in found)
+    result = real_tangents(J, p_theta, p_theta - J)
+    right_angles = sum(abs(t - 1) < ctx.mpf("1e-40") for t in result)
     unknown = {"p_x", "Y"} - {"p_theta", "p_1", "p_2", "p_hat", "z"}
-    return Measured(abs(right_angles - 1) + abs(len(found) - 3), float(len(unknown)), "J = 0.9, p_theta = 0.4")
+    return Measured(abs(right_angles - 1) + abs(len(result) - 3), float(len(unknown)), "J = 0.9, p_theta = 0.4")
 
 
 @statement
@@ -172,8 +172,8 @@ def _library_counts(J: Number) -> float:
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, float(J), 0.3), 1.0)
     miscounted = 0
     for p_theta, p_hat, count in ((0.1, -0.3, 3), (0.2, 0.9, 1)):
-        found = nh.displacements_over(discrete, [p_theta, (p_hat - 0.18) / 0.3])
-        miscounted += int(found.is_real.sum()) != count
+        result = nh.displacements_over(discrete, [p_theta, (p_hat - 0.18) / 0.3])
+        miscounted += int(result.is_real.sum()) != count
     cusp = nh.single_valued_region(discrete).cusps[2]
     defect = worst(np.array([cusp[0], 0.3 * cusp[1] + 0.18]) - np.array([*map(float, formulas.upper_cusp(J))]))
     return max(miscounted, 1e-33 * defect)

@@ -46,8 +46,8 @@ def _after(body: Body, turn: tuple) -> tuple[list, list[Matrix]]:
     V_2 = ctx.tan(angle / 2) * V_1
     p = formulas.momentum(body, angle, V_1, V_2)
     p_theta, p_1 = formulas.next_momenta(body, p[0], p[1], angle, V_2)
-    found = tangents(body.J, p_theta + body.b * p_1, body.a * p_1 + 2 * body.m * body.a**2)
-    return [p_theta, p_1], [_matrix(t, *formulas.third_step(body, p_1, t)[1:]) for t in found]
+    result = tangents(body.J, p_theta + body.b * p_1, body.a * p_1 + 2 * body.m * body.a**2)
+    return [p_theta, p_1], [_matrix(t, *formulas.third_step(body, p_1, t)[1:]) for t in result]
 
 
 def _discrete(body: Body) -> nh.Discretization:
@@ -83,8 +83,8 @@ def transported_in_space() -> Measured:
         moved = pose(*start) * admissible(turn)
         after = [start[0] + turn[0], moved[0, 2], moved[1, 2]]
         carried = arriving(body, admissible(turn))[:2]
-        shown = formulas.next_in_space(body, start, after)
-        right += [shown[0] - carried[0], formulas.printed_next_in_space(body, start, after)[0] - carried[0]]
+        printed = formulas.next_in_space(body, start, after)
+        right += [printed[0] - carried[0], formulas.printed_next_in_space(body, start, after)[0] - carried[0]]
         right.append(formulas.next_in_space(body, start, after)[1] - carried[1])
         wrong.append(formulas.printed_next_in_space(body, start, after)[1] - carried[1])
     return Measured(worst(right), float(ctx.fsum(map(abs, wrong))), "8 bodies and steps; printed: sum")
@@ -97,11 +97,11 @@ def discrete_constr() -> Measured:
     for body, turn in CASES:
         W = admissible(turn)
         p, carried = momentum(body, W), arriving(body, W)
-        found = formulas.next_momenta(body, p[0], p[1], turn[0], W[1, 2])
-        gaps += [x - y for x, y in zip(found, carried, strict=False)]
+        result = formulas.next_momenta(body, p[0], p[1], turn[0], W[1, 2])
+        gaps += [x - y for x, y in zip(result, carried, strict=False)]
         if body.a != 0 and abs(turn[0]) < 1.5:
             orbit = nh.simulate(_discrete(body), displacement=_double(W), steps=1)
-            library += [orbit.momentum[1, i] - float(found[i]) for i in range(2)]
+            library += [orbit.momentum[1, i] - float(result[i]) for i in range(2)]
     return Measured(twin.both(worst(gaps), worst(library)), note="8 bodies and steps; library: 4 steps")
 
 
@@ -110,8 +110,8 @@ def three_steps() -> Measured:
     """Make the three steps and compare the momenta of all displacements found; printed counts wrong letters."""
     gaps = []
     for body, turn in SLOW:
-        wanted, found = _after(body, turn)
-        gaps += [(p - q) / (1 + abs(q)) for W in found for p, q in zip(momentum(body, W), wanted, strict=False)]
+        wanted, result = _after(body, turn)
+        gaps += [(p - q) / (1 + abs(q)) for W in result for p, q in zip(momentum(body, W), wanted, strict=False)]
     letters = {"V_x", "p_x"} - {"V_1", "V_2", "p_theta", "p_1", "p_2"}
     wrong = letters | ({"p_theta", "p_2"} - {"p_theta", "p_1"})
     return Measured(worst(gaps), float(len(wrong)), "7 bodies, 3 branches each")
@@ -127,8 +127,8 @@ def without_quotient() -> Measured:
             p = formulas.momentum(body, turn[0], W[0, 2], W[1, 2])
             gaps.append(_unit_gap(body, turn[0], p))
             if abs(turn[0]) > 0.1:
-                shown = formulas.printed_third_step(body, turn[0], W[0, 2])
-                gaps += [(x - y) / 1e5 for x, y in zip(shown, p, strict=False)]
+                printed = formulas.printed_third_step(body, turn[0], W[0, 2])
+                gaps += [(x - y) / 1e5 for x, y in zip(printed, p, strict=False)]
         for angle, V_1, V_2 in ((ctx.zero, ctx.one, ctx.zero), (ctx.pi, ctx.zero, ctx.mpf(2))):
             p = formulas.momentum(body, angle, V_1, V_2)
             gaps.append(_unit_gap(body, angle, p))
@@ -144,10 +144,10 @@ def _unit_gap(body: Body, angle: Number, p: tuple) -> Number:
 def _misses(body: Body, angle: Number, V_1: Number, p: tuple) -> bool:
     """Return whether the equations with the quotient have no value or a wrong one."""
     try:
-        shown = formulas.printed_third_step(body, angle, V_1)
+        printed = formulas.printed_third_step(body, angle, V_1)
     except ZeroDivisionError:
         return True
-    return worst([shown[0] - p[0], shown[1] - p[1]]) > 0.1
+    return worst([printed[0] - p[0], printed[1] - p[1]]) > 0.1
 
 
 @statement
@@ -243,8 +243,8 @@ def balanced_branches() -> Measured:
         for momenta in (carried, other, formulas.next_momenta(body, p[0], p[1], angle, W[1, 2])):
             gaps += [x - y for x, y in zip(momenta[:2], p, strict=False)]
         gaps.append(body.J * ctx.sin(angle) - p[0] - body.b * p[1])
-        found = twin.roots(formulas.cubic(body.J, 1.5 * body.J, 0)[1:])
-        failures += sum(abs(ctx.im(t)) < 0.1 for t in found)
+        result = twin.roots(formulas.cubic(body.J, 1.5 * body.J, 0)[1:])
+        failures += sum(abs(ctx.im(t)) < 0.1 for t in result)
     return Measured(max(worst(gaps), failures), float(ctx.pi - 2 * angle), "5 bodies with a = 0")
 
 

@@ -69,8 +69,8 @@ def _wrong_momenta(body: Body, images: Images, unit: int) -> float:
     """Return the distance of momenta by definition, before and after displacements of a start, from those solved."""
     defects = []
     for W, after in images(_START):
-        found = (body.restrict(body.momentum(W)), body.restrict(body.arriving(W)))
-        defects += [p - unit * twin.column(state) for p, state in zip(found, (_START, after), strict=True)]
+        result = (body.restrict(body.momentum(W)), body.restrict(body.arriving(W)))
+        defects += [p - unit * twin.column(state) for p, state in zip(result, (_START, after), strict=True)]
     return twin.worst(*defects)
 
 
@@ -88,8 +88,8 @@ def _count(images: Images, generations: int) -> int:
 def sleigh_solvability() -> Measured:
     """Count images after 1 to 4 steps, check the first by the definition; follow the words of the theorem."""
     counts = [(n, _count(_sleigh_images, n)) for n in (1, 2, 3, 4)]
-    right = [abs(found - 3**n) for n, found in counts]
-    wrong = [abs(found - correspondences.printed_image_count(3, n)) for n, found in counts]
+    right = [abs(result - 3**n) for n, result in counts]
+    wrong = [abs(result - correspondences.printed_image_count(3, n)) for n, result in counts]
     solved, growth = _wrong_momenta(_SOLVED_SLEIGH, _sleigh_images, 1), nh.branch_growth(_GROWING)
     words = f"words of {', '.join(str(len(word)) for word in growth.words)} steps, L = {growth.rate:.4f}"
     note = f"{counts[-1][1]} images after 4 steps; {words}"
@@ -118,8 +118,8 @@ def _outside(growth: BranchGrowth) -> float:
 def top_solvability() -> Measured:
     """Count the images after 1 and 2 steps, n = 3; compare energies and Lyapunov functions, n = 3, 4, 5."""
     counts = [(n, _count(_top_images, n)) for n in (1, 2)]
-    right = [_wrong_momenta(_SOLVED_TOP, _top_images, 2), *(abs(found - 4**n) for n, found in counts)]
-    wrong = [abs(found - correspondences.printed_image_count(4, n)) for n, found in counts]
+    right = [_wrong_momenta(_SOLVED_TOP, _top_images, 2), *(abs(result - 4**n) for n, result in counts)]
+    wrong = [abs(result - correspondences.printed_image_count(4, n)) for n, result in counts]
     for n in (3, 4, 5):
         body = _random_top(n)
         c = twin.column([body.tensor[i, n - 1] for i in range(n - 1)])
@@ -177,12 +177,12 @@ def right_invariant() -> Measured:
     """Follow a top whose constraint is fixed in space: momenta by definition, displacements as seen from space."""
     tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     orbit = nh.simulate(nh.discretize(nh.VeselovaTop(tensor), 1.0), restricted_velocity=(0.5, -0.25), steps=10)
-    poses, momenta, seen = [ctx.matrix(g.tolist()) for g in orbit.configuration], [], []
+    poses, momenta, spins = [ctx.matrix(g.tolist()) for g in orbit.configuration], [], []
     for g, after in itertools.pairwise(poses):
         W, U = g**-1 * after, after * g**-1
         P = twin.column(twin.vee(SO(3), W * ctx.matrix(tensor.tolist()) - ctx.matrix(tensor.tolist()) * W.T))
         momenta.append(g * P)
-        seen.append(U[1, 0] - U[0, 1])
-    kept = [p[:2, 0] - momenta[0][:2, 0] for p in momenta]
+        spins.append(U[1, 0] - U[0, 1])
+    changes = [p[:2, 0] - momenta[0][:2, 0] for p in momenta]
     moves = twin.worst(*(p[2] - momenta[0][2] for p in momenta)) > 0.01
-    return Measured(max(twin.both(0, twin.worst(*kept, seen)), float(not moves)), note="a top, 10 steps")
+    return Measured(max(twin.both(0, twin.worst(*changes, spins)), float(not moves)), note="a top, 10 steps")

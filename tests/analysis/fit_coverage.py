@@ -103,8 +103,8 @@ def record_of(name: str, seed: int) -> dict[str, np.ndarray]:
 def held(name: str, seed: int) -> list[bool]:
     """Return which parameters lie in their intervals of 95 %."""
     body, _ = CASES[name]
-    found = nh.fit(body.system_of, record_of(name, seed), body.guess)
-    return [bool(low <= body.truth[each] <= high) for each, (low, high) in found.intervals.items()]
+    result = nh.fit(body.system_of, record_of(name, seed), body.guess)
+    return [bool(low <= body.truth[each] <= high) for each, (low, high) in result.intervals.items()]
 
 
 def share_held(name: str, records: int, seed: int = SEED) -> np.ndarray:

@@ -149,8 +149,8 @@ def test_the_help_names_every_field() -> None:
 
 def test_rest() -> None:
     """A body at rest keeps everything."""
-    found = nh.invariants(nh.simulate(DISCRETE, body_velocity=(0, 0, 0), steps=5))
-    assert (found.energy_drift, found.reversal_defect, found.largest_step_angle) == (0.0, 0.0, 0.0)
+    result = nh.invariants(nh.simulate(DISCRETE, body_velocity=(0, 0, 0), steps=5))
+    assert (result.energy_drift, result.reversal_defect, result.largest_step_angle) == (0.0, 0.0, 0.0)
 
 
 def test_a_negative_energy() -> None:
@@ -167,9 +167,9 @@ def test_a_negative_energy() -> None:
 def test_edges_of_a_right_invariant_run(velocity: tuple[float, float]) -> None:
     """Its steps depend on the pose: none that moves, or a single saved state, is measured all the same."""
     discrete = nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1)
-    found = nh.invariants(nh.simulate(discrete, restricted_velocity=velocity, steps=3, save_every=4))
-    assert (found.states, found.energy_drift) == (1, 0.0)
-    assert 0 <= found.reversal_defect < 1e-14
+    result = nh.invariants(nh.simulate(discrete, restricted_velocity=velocity, steps=3, save_every=4))
+    assert (result.states, result.energy_drift) == (1, 0.0)
+    assert 0 <= result.reversal_defect < 1e-14
 
 
 @pytest.mark.profile("routes", instead="test_edges_of_a_right_invariant_run")

@@ -84,11 +84,11 @@ def test_all_critical_points_are_found(seed: int) -> None:
     rng, regular = np.random.default_rng(seed), set()
     for _ in range(50):
         points = rng.normal(size=(3, 3)) * rng.uniform(0.05, 1.5, size=3)
-        found = nh.critical_energies(nh.discretize(nh.SuslovTop(points.T @ points + np.diag([0.01, 0.01, 0.0])), 1.0))
-        weights = [1 if p.on_equator or not p.half_turn_vector.any() else 2 for p in found.points]
-        signs = [-1 if p.kind == "saddle" else 1 for p in found.points]
+        result = nh.critical_energies(nh.discretize(nh.SuslovTop(points.T @ points + np.diag([0.01, 0.01, 0.0])), 1.0))
+        weights = [1 if p.on_equator or not p.half_turn_vector.any() else 2 for p in result.points]
+        signs = [-1 if p.kind == "saddle" else 1 for p in result.points]
         assert np.dot(weights, signs) == 1
-        regular.add(found.regular)
+        regular.add(result.regular)
     assert regular == {True, False}
 
 
@@ -96,14 +96,14 @@ def test_no_energy_exceeds_the_highest_point() -> None:
     """The largest energy of 200,000 displacements is the highest critical value, to the spacing of the sample."""
     rng = np.random.default_rng(1)
     for name, body in BODIES.items():
-        top, found = nh.SuslovTop(body), _found(name)
+        top, result = nh.SuslovTop(body), _found(name)
         q = rng.normal(size=(3, 200_000))
         z0, *z = q / np.linalg.norm(q, axis=0)
         z = np.array(z)
         c, B = top.coupling, top.constrained_inertia
         F = z0 * (B @ z) + (z * z).sum(axis=0) * c[:, None] - (c @ z) * z
         sampled = (F * np.linalg.solve(B, F)).sum(axis=0).max() * 2 / STEP**2
-        highest = max(p.energy for p in found.points)
+        highest = max(p.energy for p in result.points)
         assert highest * (1 - 1e-3) <= sampled <= highest * (1 + 1e-14)
 
 
@@ -113,10 +113,10 @@ def test_aligned_closed_forms() -> None:
         J = np.array(BODIES[name])
         b1, b2 = J[0, 0] + J[2, 2], J[1, 1] + J[2, 2]
         along, across = b1, b2 / (1 - J[0, 2] ** 2 / (b1 * b2))
-        found = _found(name)
+        result = _found(name)
         expected = np.sort([along, across]) / (2 * STEP**2)
-        assert np.abs(np.array([found.saddle, found.center]) - expected).max() <= 1e-13 * expected[1]
-        kind = found.points[-1] if along > across else next(p for p in found.points if p.energy == found.saddle)
+        assert np.abs(np.array([result.saddle, result.center]) - expected).max() <= 1e-13 * expected[1]
+        kind = result.points[-1] if along > across else next(p for p in result.points if p.energy == result.saddle)
         assert kind.stationary
 
 
@@ -133,27 +133,27 @@ def test_outer_ovals_surround_one_half_turn() -> None:
 
 def test_a_third_minimum_of_positive_energy() -> None:
     """In the regular regime too the energy may have a minimum on the equator that is not zero, between two saddles."""
-    found = _found("third minimum")
-    assert found.regular
-    minima = [p for p in found.points if p.kind == "minimum"]
+    result = _found("third minimum")
+    assert result.regular
+    minima = [p for p in result.points if p.kind == "minimum"]
     assert [p.energy > 0 for p in minima] == [False, False, True]
-    assert [p.kind for p in found.points if p.on_equator].count("saddle") == 2
+    assert [p.kind for p in result.points if p.on_equator].count("saddle") == 2
 
 
 def test_balanced_top() -> None:
     """For c = 0 values are eigenvalues of B over 2 h^2, all half-turns have energy zero, folds are the ridge."""
-    found = _found("balanced")
+    result = _found("balanced")
     expected = np.linalg.eigvalsh(nh.SuslovTop(BODIES["balanced"]).constrained_inertia) / (2 * STEP**2)
-    assert np.abs(np.array([found.saddle, found.center]) - expected).max() <= 1e-14 * expected[1]
-    assert (found.equatorial_saddle, found.line, found.fold) == (None, None, found.saddle)
-    assert all(p.stationary and not p.on_equator for p in found.points)
+    assert np.abs(np.array([result.saddle, result.center]) - expected).max() <= 1e-14 * expected[1]
+    assert (result.equatorial_saddle, result.line, result.fold) == (None, None, result.saddle)
+    assert all(p.stationary and not p.on_equator for p in result.points)
 
 
 def test_a_closed_curve_of_maxima() -> None:
     """For B a multiple of the identity and c = 0 saddle and center coincide, and no isolated point is listed."""
-    found = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 1.0])), 1.0))
-    assert (found.saddle, found.center) == pytest.approx((1.0, 1.0))
-    assert len(found.points) == 1
+    result = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.0, 1.0])), 1.0))
+    assert (result.saddle, result.center) == pytest.approx((1.0, 1.0))
+    assert len(result.points) == 1
 
 
 # What has no such energies is refused, with the place to look at.
@@ -212,13 +212,13 @@ def test_sharp_bound_is_the_least_energy(ratio: float) -> None:
 def test_bound_is_sharp(ratio: float, sign: int) -> None:
     """Below it random momenta have one real branch each; from the contact just into the deltoid there are three."""
     discrete, rng = _sleigh(ratio, b=0.4, sign=sign), np.random.default_rng(0)
-    system, found = discrete.system, nh.single_valued_region(discrete)
+    system, result = discrete.system, nh.single_valued_region(discrete)
     for momentum in rng.normal(size=(500, 2)):
-        scale = np.sqrt(0.999 * found.energy / system.constrained_energy(momentum))
+        scale = np.sqrt(0.999 * result.energy / system.constrained_energy(momentum))
         assert _real_branches(discrete, scale * momentum) == 1
-    center = found.cusps.mean(axis=0)
-    for contact in found.contact:
-        assert system.constrained_energy(contact) == pytest.approx(found.energy, rel=1e-13)
+    center = result.cusps.mean(axis=0)
+    for contact in result.contact:
+        assert system.constrained_energy(contact) == pytest.approx(result.energy, rel=1e-13)
         assert _real_branches(discrete, contact + 1e-3 * (center - contact)) == 3
 
 
@@ -250,10 +250,10 @@ def test_every_momentum_has_a_principal_value_below(ratio: float, sign: int) -> 
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_bound_of_the_paper_is_not_sharp(ratio: float) -> None:
     """False in the paper as a limit: it is 3.79 to 4 times too small (243/64 at m a^2 = 2J)."""
-    found = nh.single_valued_region(_sleigh(ratio))
-    assert 243 / 64 * (1 - 1e-14) <= found.energy / found.bound_of_the_paper <= 4
+    result = nh.single_valued_region(_sleigh(ratio))
+    assert 243 / 64 * (1 - 1e-14) <= result.energy / result.bound_of_the_paper <= 4
     if ratio == 2.0:
-        assert found.energy / found.bound_of_the_paper == pytest.approx(243 / 64, rel=1e-14)
+        assert result.energy / result.bound_of_the_paper == pytest.approx(243 / 64, rel=1e-14)
 
 
 def test_crossover() -> None:
@@ -266,8 +266,8 @@ def test_crossover() -> None:
 @pytest.mark.parametrize("a", [1e-8, 1e-160, 1e8])
 def test_extreme_offsets(a: float) -> None:
     """Energies are finite numbers without warnings for tiny and huge a."""
-    found = nh.single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 1.0))
-    assert 0 <= found.bound_of_the_paper <= found.energy < np.inf
+    result = nh.single_valued_region(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 1.0))
+    assert 0 <= result.bound_of_the_paper <= result.energy < np.inf
 
 
 # Balanced sleighs and other systems are refused with the reason.

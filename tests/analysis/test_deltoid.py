@@ -21,10 +21,10 @@ each = pytest.mark.parametrize("sleigh", SLEIGHS.values(), ids=SLEIGHS)
 @each
 def test_counts_are_those_of_the_cubic(sleigh: nh.ChaplyginSleigh) -> None:
     """At 2000 random momenta about the deltoid the count is the number of real roots; both counts occur often."""
-    found = deltoid(nh.discretize(sleigh, 0.4))
-    low, high = found.cusps.min(axis=0), found.cusps.max(axis=0)
+    result = deltoid(nh.discretize(sleigh, 0.4))
+    low, high = result.cusps.min(axis=0), result.cusps.max(axis=0)
     momenta = np.random.default_rng(0).uniform(low - (high - low) / 5, high + (high - low) / 5, size=(2000, 2))
-    counts = found.real_branches(momenta)
+    counts = result.real_branches(momenta)
     roots = [np.roots(cubic(sleigh, 0.4, r)) for r in momenta]
     assert np.array_equal(counts, [np.count_nonzero(abs(t.imag) < 1e-9) for t in roots])
     assert np.mean(counts == 3) > 0.1
@@ -34,8 +34,8 @@ def test_counts_are_those_of_the_cubic(sleigh: nh.ChaplyginSleigh) -> None:
 @each
 def test_two_roots_meet_on_the_boundary(sleigh: nh.ChaplyginSleigh) -> None:
     """The discriminant of the cubic vanishes on the boundary, relative to its terms."""
-    found = deltoid(nh.discretize(sleigh, 0.4))
-    for r in found.boundary(50):
+    result = deltoid(nh.discretize(sleigh, 0.4))
+    for r in result.boundary(50):
         a, b, c, d = cubic(sleigh, 0.4, r)
         terms = np.array([18 * a * b * c * d, -4 * b**3 * d, b * b * c * c, -4 * a * c**3, -27 * a * a * d * d])
         assert abs(terms.sum()) <= 1e-12 * max(1.0, np.abs(terms).max())
@@ -44,24 +44,24 @@ def test_two_roots_meet_on_the_boundary(sleigh: nh.ChaplyginSleigh) -> None:
 @each
 def test_cusps(sleigh: nh.ChaplyginSleigh) -> None:
     """In (h pi, phat) they are (0, -2J) and (+-3 sqrt(3) J/4, J/4); the boundary has them at its thirds."""
-    found = deltoid(nh.discretize(sleigh, 0.4))
+    result = deltoid(nh.discretize(sleigh, 0.4))
     J, shift = sleigh.inertia, 2 * sleigh.mass * sleigh.a**2
     planes = [(0.0, -2 * J), (3 * np.sqrt(3) / 4 * J, J / 4), (-3 * np.sqrt(3) / 4 * J, J / 4)]
-    for cusp, (pi, phat) in zip(found.cusps, planes, strict=True):
+    for cusp, (pi, phat) in zip(result.cusps, planes, strict=True):
         p_1 = (phat - shift) / sleigh.a / 0.4
         assert np.allclose(cusp, [pi / 0.4 - sleigh.b * p_1, p_1], rtol=1e-13, atol=1e-13)
-    assert np.allclose(found.boundary(4)[[0, 1, 2]], found.cusps, atol=1e-12)
+    assert np.allclose(result.boundary(4)[[0, 1, 2]], result.cusps, atol=1e-12)
 
 
 @each
 def test_discriminant_is_the_product_of_differences(sleigh: nh.ChaplyginSleigh) -> None:
     """For roots U = exp(i Delta) of the cubic in U it is the product of |U_j - U_k|^2, where all are real angles."""
-    found = deltoid(nh.discretize(sleigh, 0.4))
-    inside = 0.4 * found.cusps[0] + 0.35 * found.cusps[1] + 0.25 * found.cusps[2]
+    result = deltoid(nh.discretize(sleigh, 0.4))
+    inside = 0.4 * result.cusps[0] + 0.35 * result.cusps[1] + 0.25 * result.cusps[2]
     t = np.roots(cubic(sleigh, 0.4, inside)).real
     U = (1 + 1j * t) ** 2 / (1 + t * t)
     product = np.prod([abs(U[j] - U[k]) ** 2 for j, k in ((0, 1), (0, 2), (1, 2))])
-    assert np.isclose(found.discriminant(inside), product, rtol=1e-9)
+    assert np.isclose(result.discriminant(inside), product, rtol=1e-9)
 
 
 @each
@@ -114,7 +114,7 @@ def test_turn_of_a_discrete_sleigh() -> None:
 def test_axes_in_space_of_a_discrete_top() -> None:
     """The product of all rotations in 40 digits carries the limit axes to those that `asymptotics` finds."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.5, 0.4), steps=2)
-    found, ends = nh.asymptotics(orbit), []
+    result, ends = nh.asymptotics(orbit), []
     with mpmath.workdps(40):
         B, c = mpmath.matrix(TOP.system.constrained_inertia.tolist()), TOP.system.coupling.tolist()
         for sign in (1, -1):
@@ -126,5 +126,5 @@ def test_axes_in_space_of_a_discrete_top() -> None:
                 half = mpmath.matrix([[0, 0, y[0]], [0, 0, y[1]], [-y[0], -y[1], 0]])
                 pose = pose * (mpmath.eye(3) + half) * (mpmath.eye(3) - half) ** -1
             ends.append(np.array(pose.tolist(), dtype=float))
-    assert np.abs(ends[0] @ found.axis_after - found.spatial_axis_after).max() <= 1e-12
-    assert np.abs(ends[1] @ found.axis_before - found.spatial_axis_before).max() <= 1e-12
+    assert np.abs(ends[0] @ result.axis_after - result.spatial_axis_after).max() <= 1e-12
+    assert np.abs(ends[1] @ result.axis_before - result.spatial_axis_before).max() <= 1e-12

@@ -47,15 +47,15 @@ def _seen(body: Any, axes: np.ndarray, vector: Any) -> Any:
 @equal
 def test_equilibria_and_limits(body: Any, same: Any, axes: np.ndarray) -> None:
     """Equilibria, their spectra for flow and map, limits and witnesses are those of the named class."""
-    known, other = nh.equilibria(nh.discretize(body, 0.3), 0.4), nh.equilibria(nh.discretize(same, 0.3), 0.4)
-    assert np.allclose(_seen(body, axes, known.velocity), other.velocity, atol=1e-13)
+    reference, other = nh.equilibria(nh.discretize(body, 0.3), 0.4), nh.equilibria(nh.discretize(same, 0.3), 0.4)
+    assert np.allclose(_seen(body, axes, reference.velocity), other.velocity, atol=1e-13)
     for name in ("rates", "multipliers"):
-        assert np.allclose(getattr(known, name), getattr(other, name), rtol=1e-12)
+        assert np.allclose(getattr(reference, name), getattr(other, name), rtol=1e-12)
     assert np.isclose(nh.invariant_measure(body).witness, nh.invariant_measure(same).witness, rtol=1e-12)
     limits, others = nh.asymptotics(body), nh.asymptotics(same)
     axis = None if limits.axis_after is None else axes @ limits.axis_after
     for one, two in (
-        (known.highest_energy, other.highest_energy),
+        (reference.highest_energy, other.highest_energy),
         (limits.heading_turn, others.heading_turn),
         (limits.motion_turn, others.motion_turn),
         (axis, others.axis_after),
@@ -70,14 +70,14 @@ def test_values_of_the_map(body: Any, same: Any, axes: np.ndarray) -> None:
     one, two = nh.discretize(body, 0.8), nh.discretize(same, 0.8)
     back = body.group.inverse(axes)
     p = body.inertia_operator @ (np.linspace(0.9, 0.4, len(body.constraint_subspace)) @ body.constraint_subspace)
-    seen = body.group.adjoint(back).T @ p
-    known, other = nh.displacements_over(one, body.restrict(p)), nh.displacements_over(two, same.restrict(seen))
-    assert len(known) == len(other)
-    assert np.isclose(known.energy, other.energy, rtol=1e-12)
-    assert known.principal == other.principal
-    real = known.is_real
-    assert np.allclose(axes @ known.displacement[real] @ back, other.displacement[other.is_real], atol=1e-10)
-    assert np.allclose(known.fold_distance, other.fold_distance, rtol=1e-6, atol=1e-9)
+    momentum = body.group.adjoint(back).T @ p
+    reference, other = nh.displacements_over(one, body.restrict(p)), nh.displacements_over(two, same.restrict(momentum))
+    assert len(reference) == len(other)
+    assert np.isclose(reference.energy, other.energy, rtol=1e-12)
+    assert reference.principal == other.principal
+    real = reference.is_real
+    assert np.allclose(axes @ reference.displacement[real] @ back, other.displacement[other.is_real], atol=1e-10)
+    assert np.allclose(reference.fold_distance, other.fold_distance, rtol=1e-6, atol=1e-9)
 
 
 @planar
@@ -100,18 +100,20 @@ def test_planar_geometry(body: Any, same: Any, axes: np.ndarray) -> None:
             values = getattr(nh.critical_energies(one), name), getattr(nh.critical_energies(two), name)
             assert np.isclose(*values, rtol=1e-12)
     else:
-        known, found = nh.single_valued_region(one), nh.single_valued_region(two)
-        assert np.allclose([known.energy, known.principal_energy], [found.energy, found.principal_energy], rtol=1e-12)
-        inside = (found.cusps + found.cusps.mean(axis=0)) / 2
+        reference, result = nh.single_valued_region(one), nh.single_valued_region(two)
+        assert np.allclose(
+            [reference.energy, reference.principal_energy], [result.energy, result.principal_energy], rtol=1e-12
+        )
+        inside = (result.cusps + result.cusps.mean(axis=0)) / 2
         assert deltoid(two).real_branches(inside).tolist() == [3, 3, 3]
 
 
 @planar
 def test_orbits_between_the_equilibria(body: Any, same: Any, axes: np.ndarray) -> None:
     """The orbit half way between the equilibria is that of the named class, seen from the other axes."""
-    known = nh.heteroclinic(nh.discretize(body, 0.5), energy=0.3)
+    reference = nh.heteroclinic(nh.discretize(body, 0.5), energy=0.3)
     other = nh.heteroclinic(nh.discretize(same, 0.5), energy=0.3, side=1)
-    expected = known.orbit.body_velocity[[0, -1]] @ body.group.adjoint(axes).T
+    expected = reference.orbit.body_velocity[[0, -1]] @ body.group.adjoint(axes).T
     assert np.allclose(expected, other.orbit.body_velocity[[0, -1]], atol=1e-10)
 
 

@@ -186,11 +186,11 @@ def test_linearization_is_that_of_runs(name: str) -> None:
     alone = dataclasses.replace(feedback, gains=0 * feedback.gains)
     push = np.random.default_rng(5).normal(size=feedback.controls.shape)
     ends = [alone.simulate(**_beside(name, x), disturbance=x * push).error for x in (size, -size)]
-    found = (ends[0] - ends[1]) / (2 * size)
-    errors = [found[0]]
+    result = (ends[0] - ends[1]) / (2 * size)
+    errors = [result[0]]
     for A, B, force in zip(*feedback.linearization, push, strict=True):
         errors.append(A @ errors[-1] + B @ force)
-    np.testing.assert_allclose(found, errors, rtol=0, atol=1e-6 * np.abs(found).max())
+    np.testing.assert_allclose(result, errors, rtol=0, atol=1e-6 * np.abs(result).max())
 
 
 @pytest.mark.profile("routes", instead="test_bad_arguments_in_coordinates_are_refused")

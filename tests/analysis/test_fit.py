@@ -55,9 +55,9 @@ def _top_record(seed: int, discrete: nh.Discretization = TOP, noise: float = 1.0
     return {"t": orbit.time, **dict(zip(("omega_x", "omega_y", "omega_z"), rates.T, strict=True))}
 
 
-def _errors(found: Fit, truth: list[float]) -> np.ndarray:
-    values = np.concatenate([np.ravel(x) for x in found.parameters.values()])
-    return (values - truth) / np.sqrt(found.covariance.diagonal())
+def _errors(result: Fit, truth: list[float]) -> np.ndarray:
+    values = np.concatenate([np.ravel(x) for x in result.parameters.values()])
+    return (values - truth) / np.sqrt(result.covariance.diagonal())
 
 
 FAR, RECORD = {"inertia": 1e6, "a": -50.0}, _sleigh_record(0)
@@ -75,8 +75,8 @@ def test_bodies_are_found_within_their_errors(name: str, records: int) -> None:
     system_of, record, truth, guess, noise = BODIES[name]
     discrete = nh.discretize(system_of(truth), 0.05)
     values = [float(x) for part in truth.values() for x in np.ravel(part)]
-    given = (record(seed, discrete, noise) for seed in range(records))
-    errors = np.array([_errors(nh.fit(system_of, each, guess), values) for each in given])
+    arguments = (record(seed, discrete, noise) for seed in range(records))
+    errors = np.array([_errors(nh.fit(system_of, each, guess), values) for each in arguments])
     assert (np.abs(errors) < 3).all(axis=1).mean() >= 0.95
     # of one parameter, binomial: 3.5 sigma for 100
     assert records < 100 or ((np.abs(errors) < 1.98).mean(axis=0) >= 0.87).all()
@@ -89,9 +89,9 @@ def test_exact_record_is_fitted_exactly(caplog: pytest.LogCaptureFixture) -> Non
     """
     orbit = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), configuration=nh.SE(2).exp([0.7, 1.0, 2.0]), steps=60)
     record = {"t": orbit.time, "x": orbit.position[:, 0], "y": orbit.position[:, 1], "theta": orbit.heading}
-    found = nh.fit(sleigh, record, {"inertia": 2.0, "a": 0.9})
-    np.testing.assert_allclose([*found.parameters.values()], [0.7, 0.4], rtol=1e-10)
-    np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
+    result = nh.fit(sleigh, record, {"inertia": 2.0, "a": 0.9})
+    np.testing.assert_allclose([*result.parameters.values()], [0.7, 0.4], rtol=1e-10)
+    np.testing.assert_allclose(result.orbit.configuration, orbit.configuration, atol=1e-10)
     with jax.log_compiles(), caplog.at_level("WARNING"):
         shorter = nh.fit(sleigh, {name: column[:50] for name, column in record.items()}, GUESS)
         assert nh.fit(sleigh, record, GUESS, noise=0.01).outcome == "converged"
@@ -106,13 +106,13 @@ def test_residuals_and_noise_are_those_of_their_kind() -> None:
     Where a column has gaps, its residuals have them, and the noise of each kind lies near the true one.
     """
     record = record_of("sleigh: position, turn, rate", 1)
-    found = nh.fit(sleigh, record, GUESS)
-    (residuals,), orbit = found.residuals, found.orbit
+    result = nh.fit(sleigh, record, GUESS)
+    (residuals,), orbit = result.residuals, result.orbit
     np.testing.assert_allclose(residuals["turn"][:, 0], record["theta"] - orbit.heading, atol=1e-12)
     np.testing.assert_allclose(residuals["rate"][:, 0], record["omega"] - orbit.body_velocity[:, 0], atol=1e-12)
     places = np.stack([record["x"], record["y"]], axis=1)
     np.testing.assert_allclose(residuals["position"], places - orbit.position, atol=1e-12)
-    for kind, level in found.noise.items():
+    for kind, level in result.noise.items():
         assert MEASURED.noise[kind] / 3 < level < 3 * MEASURED.noise[kind]
 
 
@@ -127,9 +127,9 @@ def test_intervals_hold_for_every_combination_of_kinds() -> None:
     least = int(binom.ppf(1e-4, 40, 0.95))
     shares = []
     for name in CASES:
-        found = np.array([held(name, 41_000_000 + r) for r in range(40)])
-        assert (found.sum(axis=0) >= least).all(), name
-        shares.append(found.ravel())
+        result = np.array([held(name, 41_000_000 + r) for r in range(40)])
+        assert (result.sum(axis=0) >= least).all(), name
+        shares.append(result.ravel())
     assert 0.915 <= np.concatenate(shares).mean() <= 0.985
 
 
@@ -155,13 +155,13 @@ def test_robust_loss_bears_outliers() -> None:
         record, rng = _sleigh_record(seed), np.random.default_rng(500 + seed)
         for name in ("x", "y", "theta"):
             record[name] = record[name] + np.where(rng.random(61) < 0.05, rng.normal(1.0, 1.0, 61), 0.0)
-        found = nh.fit(sleigh, record, GUESS, loss="soft_l1")
-        assert found.outcome == "converged"
-        hits += sum(low < x < high for x, (low, high) in zip(truth, found.intervals.values(), strict=True))
+        result = nh.fit(sleigh, record, GUESS, loss="soft_l1")
+        assert result.outcome == "converged"
+        hits += sum(low < x < high for x, (low, high) in zip(truth, result.intervals.values(), strict=True))
     assert hits >= 13
-    interval = found.profile("a").interval
-    np.testing.assert_allclose(interval, found.intervals["a"], atol=0.2 * np.diff(interval)[0])
-    assert nh.fit(sleigh, record, GUESS).covariance[0, 0] > 100 * found.covariance[0, 0]
+    interval = result.profile("a").interval
+    np.testing.assert_allclose(interval, result.intervals["a"], atol=0.2 * np.diff(interval)[0])
+    assert nh.fit(sleigh, record, GUESS).covariance[0, 0] > 100 * result.covariance[0, 0]
 
 
 @pytest.mark.profile("routes", cases=["good", "outlier", "more than the noise"])
@@ -179,10 +179,10 @@ def test_robust_loss_bears_outliers() -> None:
 )
 def test_outcome_tells_what_became_of_the_search(change: dict, options: dict, outcome: str) -> None:
     """A search ends in a word, and never among numbers that are no body."""
-    found = nh.fit(sleigh, RECORD | change, **{"guess": GUESS, **options})
-    assert found.outcome == outcome
-    assert found.parameters["inertia"] > 0
-    assert found.parameters["a"] <= options.get("bounds", {}).get("a", (0, np.inf))[1]
+    result = nh.fit(sleigh, RECORD | change, **{"guess": GUESS, **options})
+    assert result.outcome == outcome
+    assert result.parameters["inertia"] > 0
+    assert result.parameters["a"] <= options.get("bounds", {}).get("a", (0, np.inf))[1]
 
 
 @pytest.mark.profile("routes", instead="test_outcome_tells_what_became_of_the_search")
@@ -200,9 +200,9 @@ def test_positions_alone_tell_the_first_pose() -> None:
     start = nh.SE(2).exp([2.5, 1.0, 2.0])
     orbit = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), configuration=start, steps=60)
     places = {"t": orbit.time, "x": orbit.position[:, 0], "y": orbit.position[:, 1]}
-    found = nh.fit(sleigh, places, GUESS)
-    np.testing.assert_allclose([*found.parameters.values()], [0.7, 0.4], rtol=1e-7)
-    np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-7)
+    result = nh.fit(sleigh, places, GUESS)
+    np.testing.assert_allclose([*result.parameters.values()], [0.7, 0.4], rtol=1e-7)
+    np.testing.assert_allclose(result.orbit.configuration, orbit.configuration, atol=1e-7)
 
 
 @pytest.mark.profile("routes", instead="test_bodies_are_found_within_their_errors")
@@ -239,21 +239,21 @@ def test_residuals_and_profiles_are_drawn() -> None:
 
     Where the record is good, the profile is nearly the parabola, and its interval that of the covariance.
     """
-    found = nh.fit(sleigh, RECORD, GUESS)
-    assert len(repr(found)) < 500  # the residuals are not in it
-    figure = found.plot()
+    result = nh.fit(sleigh, RECORD, GUESS)
+    assert len(repr(result)) < 500  # the residuals are not in it
+    figure = result.plot()
     assert figure._repr_png_().startswith(b"\x89PNG")
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]  # a line at zero each
     dots = figure.axes[1].lines[1].get_ydata()
-    np.testing.assert_array_equal(dots, found.residuals[0]["turn"][:, 0])
-    assert (np.abs(dots[np.isfinite(dots)]) < 2 * found.noise["turn"]).mean() > 0.9
-    profile = found.profile("a")
-    (low, high), (left, right) = profile.interval, found.intervals["a"]
+    np.testing.assert_array_equal(dots, result.residuals[0]["turn"][:, 0])
+    assert (np.abs(dots[np.isfinite(dots)]) < 2 * result.noise["turn"]).mean() > 0.9
+    profile = result.profile("a")
+    (low, high), (left, right) = profile.interval, result.intervals["a"]
     np.testing.assert_allclose([low, high], [left, right], atol=0.05 * (high - low))
     assert not np.array_equal([low, high], [left, right])
     assert [line.get_label() for line in profile.plot().axes[0].lines][1:] == ["linearized", "profile"]
     with pytest.raises(ValueError, match="be one of 'inertia', 'a'"):
-        found.profile("mass")
+        result.profile("mass")
 
 
 @pytest.mark.profile("long", instead="test_profile_of_a_line_is_its_parabola")
@@ -264,8 +264,8 @@ def test_profiles_hold_more_often_than_the_covariance() -> None:
     """
     discrete, rows = nh.discretize(_rubbed(RUBBED), 0.05), []
     for seed in range(100):
-        found = nh.fit(_rubbed, _sleigh_record(seed, discrete), BODIES["friction"][3])
-        profile, (low, high) = found.profile("inertia"), found.intervals["inertia"]
+        result = nh.fit(_rubbed, _sleigh_record(seed, discrete), BODIES["friction"][3])
+        profile, (low, high) = result.profile("inertia"), result.intervals["inertia"]
         assert np.isinf(profile.interval[1]) == (profile.ends[1] == "unbounded")
         rows.append((profile.interval[0] <= 0.7 <= profile.interval[1], low <= 0.7 <= high))
     by_profile, by_covariance = np.sum(rows, axis=0)
@@ -279,8 +279,8 @@ def test_poses_of_a_top_are_read_as_quaternions() -> None:
     orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), configuration=nh.SO(3).exp([0.3, 0.2, 0.1]), steps=60)
     record = {"t": orbit.time, **dict(zip(("qw", "qx", "qy", "qz"), orbit.pose.T, strict=True))}
     for each in (record, orbit):
-        found = nh.fit(_top, each, {"c": np.array([0.2, -0.1]), "b": 1.1})
-        np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
+        result = nh.fit(_top, each, {"c": np.array([0.2, -0.1]), "b": 1.1})
+        np.testing.assert_allclose(result.parameters["c"], [0.3, -0.2], rtol=1e-9)
 
 
 def test_lists_of_traced_numbers_are_refused() -> None:
@@ -370,5 +370,5 @@ def test_kind_that_is_used_up_is_refused() -> None:
         record[name][1:last] = np.nan
     with pytest.raises(ValueError, match=r"tell the noise of each kind.* Pass noise="):
         nh.fit(sleigh, record, GUESS)
-    found = nh.fit(sleigh, record, GUESS, noise={"position": 0.004, "turn": 0.002})
-    assert (found.outcome, found.noise["position"]) == ("converged", 0.004)
+    result = nh.fit(sleigh, record, GUESS, noise={"position": 0.004, "turn": 0.002})
+    assert (result.outcome, result.noise["position"]) == ("converged", 0.004)

@@ -51,24 +51,24 @@ def recorded(seed: int, *names: str, noise: float = NOISE) -> dict[str, np.ndarr
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_a_clean_record_is_fitted_closely() -> None:
     """With noise of a millionth the numbers of positions alone are those of the truth, and so is the motion."""
-    found = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), GUESS)
-    assert {name: pytest.approx(value, abs=1e-4) for name, value in TRUTH.items()} == found.parameters
-    assert found.system == robot(found.parameters)
-    assert np.abs(found.residuals[0]["position"]).max() <= 5e-6
-    assert found.orbit.configuration[0, 2] == pytest.approx(0.3, abs=1e-4)
-    assert found.outcome == "converged"
+    result = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), GUESS)
+    assert {name: pytest.approx(value, abs=1e-4) for name, value in TRUTH.items()} == result.parameters
+    assert result.system == robot(result.parameters)
+    assert np.abs(result.residuals[0]["position"]).max() <= 5e-6
+    assert result.orbit.configuration[0, 2] == pytest.approx(0.3, abs=1e-4)
+    assert result.outcome == "converged"
 
 
-def deviations(found: Any, truth: dict[str, float]) -> np.ndarray:
+def deviations(result: Any, truth: dict[str, float]) -> np.ndarray:
     """Return the errors of a fit in units of their standard deviations."""
-    off = [found.parameters[name] - value for name, value in truth.items()]
-    return np.array(off) / np.sqrt(found.covariance.diagonal())
+    off = [result.parameters[name] - value for name, value in truth.items()]
+    return np.array(off) / np.sqrt(result.covariance.diagonal())
 
 
 def of_robots(seeds: int) -> np.ndarray:
     """Return those of noisy positions alone."""
     fits = (nh.fit(robot, recorded(seed, "x", "y"), GUESS) for seed in range(seeds))
-    return np.array([deviations(found, TRUTH) for found in fits])
+    return np.array([deviations(result, TRUTH) for result in fits])
 
 
 def test_noisy_positions_tell_two_numbers() -> None:
@@ -91,19 +91,19 @@ def test_each_coordinate_has_a_noise_of_its_own() -> None:
     """Positions, headings, beyond half a turn, and a wheel angle are kinds by their names."""
     record = recorded(1, "x", "y", "theta", "wheel")
     record["theta"] = np.angle(np.exp(1j * (record["theta"] + 5 * NOISE * np.sin(7 * np.arange(STEPS + 1)))))
-    found = nh.fit(robot, record, GUESS)
-    assert list(found.noise) == ["position", "theta", "wheel"]
-    assert 0.5 * NOISE <= found.noise["position"] <= 2 * NOISE
-    assert 2 * NOISE <= found.noise["theta"] <= 6 * NOISE
+    result = nh.fit(robot, record, GUESS)
+    assert list(result.noise) == ["position", "theta", "wheel"]
+    assert 0.5 * NOISE <= result.noise["position"] <= 2 * NOISE
+    assert 2 * NOISE <= result.noise["theta"] <= 6 * NOISE
     record["heading"] = record.pop("theta")
-    assert nh.fit(robot, record, GUESS).parameters == found.parameters
+    assert nh.fit(robot, record, GUESS).parameters == result.parameters
 
 
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_several_trials_have_one_body() -> None:
     """Two records, each with a start of its own, tell more than one."""
     records = [recorded(seed, "x", "y") for seed in (0, 1)]
-    alone, both = (nh.fit(robot, given, GUESS) for given in (records[0], records))
+    alone, both = (nh.fit(robot, arguments, GUESS) for arguments in (records[0], records))
     assert (np.sqrt(both.covariance.diagonal()) < 0.85 * np.sqrt(alone.covariance.diagonal())).all()
     assert len(both.orbit) == 2
 
@@ -152,10 +152,10 @@ def swings(seed: int, noise: float) -> dict[str, np.ndarray]:
 def test_a_motion_under_holonomic_constraints_is_fitted(records: int) -> None:
     """Numbers of the energy and of the constraint; errors are as large as the fit says, in both alike."""
     guess = {"gravity": 9.0, "length": 1.0}
-    found: Any = nh.fit(rod, swings(0, 1e-9), guess)
-    assert found.outcome == "converged"
-    assert found.parameters == {"gravity": pytest.approx(9.81, abs=1e-6), "length": pytest.approx(1.2, abs=1e-8)}
-    assert np.abs(np.linalg.norm(found.orbit.configuration, axis=1) - found.parameters["length"]).max() <= 1e-14
+    result: Any = nh.fit(rod, swings(0, 1e-9), guess)
+    assert result.outcome == "converged"
+    assert result.parameters == {"gravity": pytest.approx(9.81, abs=1e-6), "length": pytest.approx(1.2, abs=1e-8)}
+    assert np.abs(np.linalg.norm(result.orbit.configuration, axis=1) - result.parameters["length"]).max() <= 1e-14
     errors = []
     for seed in range(records):
         noisy = nh.fit(rod, swings(seed, 1e-3), guess)
@@ -184,9 +184,9 @@ def misses(seed: int) -> np.ndarray:
     orbit = twist()
     rows = orbit.configuration[:, :3] + np.random.default_rng(seed).normal(scale=1e-3, size=(len(orbit), 3))
     record = {"t": orbit.time} | dict(zip(("x", "y", "theta"), rows.T, strict=True))
-    found = nh.fit(twistcar, record, {"inertia": 0.2, "center": 0.2, "handle": 0.25})
-    assert found.outcome == "converged"
-    return deviations(found, TWISTCAR)
+    result = nh.fit(twistcar, record, {"inertia": 0.2, "center": 0.2, "handle": 0.25})
+    assert result.outcome == "converged"
+    return deviations(result, TWISTCAR)
 
 
 @pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")

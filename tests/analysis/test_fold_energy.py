@@ -141,10 +141,10 @@ def test_fold_energy_against_the_matrices(name: str) -> None:
 def test_the_inner_displacement_is_not_unique_below_the_saddle() -> None:
     """At 0.985 h* a momentum has three inner values, and a principal orbit ends; its limits are those of any branch."""
     top = _discrete(THREE)
-    known = nh.critical_energies(top)
-    level = 0.985 * known.saddle
-    assert known.regular
-    assert known.fold < level < known.saddle
+    reference = nh.critical_energies(top)
+    level = 0.985 * reference.saddle
+    assert reference.regular
+    assert reference.fold < level < reference.saddle
     regions = [
         nh.displacements_over(top, r).region.tolist() for r in _momenta(top, level, np.linspace(0.0, 2 * np.pi, 101))
     ]
@@ -253,16 +253,16 @@ def test_the_line_of_equilibria_ends_between_saddle_and_center() -> None:
     """Its top is the energy of the equilibrium that turns by 90 degrees; `equilibria` says the same."""
     for name in REGULAR:
         top = _discrete(name, 0.7)
-        known = nh.critical_energies(top)
-        assert known.saddle <= known.line <= known.center
+        reference = nh.critical_energies(top)
+        assert reference.saddle <= reference.line <= reference.center
         c = top.system.coupling
         z = -np.sqrt(0.5) * c / np.hypot(*c)
         W = np.block([[np.eye(2) - 2 * np.outer(z, z), np.sqrt(2) * z[:, None]], [-np.sqrt(2) * z, np.zeros(1)]])
         orbit = nh.simulate(top, displacement=W, steps=1, throw=False, branch="smallest")
-        assert orbit.energy[0] == pytest.approx(known.line, rel=1e-13)
-        assert nh.equilibria(top, 0.5 * known.line).highest_energy == known.line
-        with pytest.raises(ValueError, match=f"Lower the energy, to {known.line:.6g} at most"):
-            nh.equilibria(top, 1.001 * known.line)
+        assert orbit.energy[0] == pytest.approx(reference.line, rel=1e-13)
+        assert nh.equilibria(top, 0.5 * reference.line).highest_energy == reference.line
+        with pytest.raises(ValueError, match=f"Lower the energy, to {reference.line:.6g} at most"):
+            nh.equilibria(top, 1.001 * reference.line)
 
 
 H = 0.5
@@ -351,9 +351,9 @@ def test_no_fold_below_the_bound(seed: int, bodies: int) -> None:
     for _ in range(bodies):
         sigma = rng.uniform(0.25, 1 / 3) if rng.random() < 0.6 else rng.uniform(1 / 3, 0.4999)
         b, c = _body_of_rank(int(rng.integers(3, 6)), sigma, rng)
-        known = nh.critical_energies(nh.discretize(_top_of(b, c, rng), H))
-        assert known.fold == pytest.approx(_bound(sigma) * b[0] / (2 * H * H), rel=1e-12)
-        nearest = min(nearest, _lowest_fold(b, c, rng) / known.fold)
+        reference = nh.critical_energies(nh.discretize(_top_of(b, c, rng), H))
+        assert reference.fold == pytest.approx(_bound(sigma) * b[0] / (2 * H * H), rel=1e-12)
+        nearest = min(nearest, _lowest_fold(b, c, rng) / reference.fold)
     assert 1 - 1e-12 <= nearest <= 1.2
 
 
@@ -361,9 +361,9 @@ def test_the_bound_is_reached() -> None:
     """With c along the axis of the least eigenvalue the lowest ridge is the bound, and a fold, if sigma <= 1/3."""
     b, c = np.array([1.0, 1.5, 2.0]), np.array([np.sqrt(0.5), 0.0, 0.0])
     y = np.array([1.0, 0.0, 0.0])  # the angle of 90 degrees, on the ridge
-    known = nh.critical_energies(nh.discretize(_top_of(b, c, np.random.default_rng(0)), H))
-    assert _energy(b, c, y) == pytest.approx(known.fold, rel=1e-14)
-    assert known.line == pytest.approx(known.fold, rel=1e-14)
+    reference = nh.critical_energies(nh.discretize(_top_of(b, c, np.random.default_rng(0)), H))
+    assert _energy(b, c, y) == pytest.approx(reference.fold, rel=1e-14)
+    assert reference.line == pytest.approx(reference.fold, rel=1e-14)
     assert abs(_determinant(b, c, y)) <= 1e-14
 
 
@@ -384,9 +384,9 @@ def test_below_the_bound_principal_orbits_continue() -> None:
     for k, sigma in ((3, 0.33), (5, 0.45), (3, 0.5001)):
         b, c = _body_of_rank(k, sigma, rng)
         top = nh.discretize(_top_of(b, c, rng), H)
-        known = nh.critical_energies(top)
-        assert known.regular == (sigma < 0.5)
-        level = 0.9999 * (known.fold or 0.5 * b[0] / (2 * H * H))
+        reference = nh.critical_energies(top)
+        assert reference.regular == (sigma < 0.5)
+        level = 0.9999 * (reference.fold or 0.5 * b[0] / (2 * H * H))
         for direction in rng.normal(size=(8, k)):
             r = direction * np.sqrt(level / top.system.constrained_energy(direction))
             orbit = nh.simulate(top, momentum=r, steps=60, throw=False)
@@ -403,5 +403,5 @@ def test_other_tops() -> None:
     top = nh.discretize(nh.SuslovTop(np.diag([1.0, 0.7, 0.9, 0.6]) + 0.2), H)
     assert nh.critical_energies(top).line == pytest.approx(nh.equilibria(top, 0.1).highest_energy, rel=1e-14)
     broad = nh.SuslovTop.arrowhead(np.linspace(1.0, 2.0, 100_000), np.full(99_999, 1e-3))
-    known = nh.critical_energies(nh.discretize(broad, H))
-    assert known.fold == pytest.approx(3.0 / (2 * H * H), rel=1e-14)
+    reference = nh.critical_energies(nh.discretize(broad, H))
+    assert reference.fold == pytest.approx(3.0 / (2 * H * H), rel=1e-14)

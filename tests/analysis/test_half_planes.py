@@ -36,14 +36,14 @@ def _combinations(top: nh.SuslovTop, momentum: np.ndarray) -> np.ndarray:
 
 def _orbits(discrete: nh.Discretization, shares: np.ndarray) -> list[nh.Orbit]:
     """Run orbits whose energies are shares of the saddle's, or of the bound of the single-valued region."""
-    system, rng, found = discrete.system, np.random.default_rng(0), []
+    system, rng, result = discrete.system, np.random.default_rng(0), []
     is_top = isinstance(system, nh.SuslovTop)
     bound = nh.critical_energies(discrete).saddle if is_top else nh.single_valued_region(discrete).energy
     for share in shares:
         r = rng.normal(size=2)
         r *= np.sqrt(share * bound / system.constrained_energy(r))
-        found.append(nh.simulate(discrete, momentum=r, steps=60, reconstruct=False))
-    return found
+        result.append(nh.simulate(discrete, momentum=r, steps=60, reconstruct=False))
+    return result
 
 
 def test_they_are_the_letters_of_the_paper() -> None:
@@ -51,9 +51,9 @@ def test_they_are_the_letters_of_the_paper() -> None:
     top, discrete = TOP.system, TOP
     for orbit in _orbits(discrete, np.array([0.1, 0.9])):
         s, Q = _paper(top, orbit.displacement)
-        found = nh.half_planes(discrete, displacement=orbit.displacement)
-        assert np.abs(found.side - s).max() <= 1e-14
-        assert np.abs(found.forward - Q).max() <= 1e-14
+        result = nh.half_planes(discrete, displacement=orbit.displacement)
+        assert np.abs(result.side - s).max() <= 1e-14
+        assert np.abs(result.forward - Q).max() <= 1e-14
         combined = np.array(nh.half_planes(discrete, momentum=orbit.momentum)) / 2
         assert np.abs(combined - _combinations(top, orbit.momentum)).max() <= 1e-14
 
@@ -65,13 +65,13 @@ def test_attracting_equilibria_are_forward(name: str) -> None:
     spectrum = nh.equilibria(discrete, 0.3)
     assert abs(spectrum.multipliers[0]) < 1
     start = nh.simulate(discrete, body_velocity=spectrum.velocity, steps=1)
-    for found in (
+    for result in (
         nh.half_planes(discrete, displacement=start.displacement),
         nh.half_planes(discrete, momentum=start.momentum),
         nh.half_planes(discrete, momentum=start.restricted_momentum),
     ):
-        assert np.all(found.forward > 0)
-        assert np.abs(found.side).max() <= 1e-15
+        assert np.all(result.forward > 0)
+        assert np.abs(result.side).max() <= 1e-15
     reverse = nh.half_planes(discrete, displacement=np.linalg.inv(start.displacement))
     assert np.all(reverse.forward < 0)
 
@@ -92,9 +92,9 @@ def test_orbits_stay_on_their_side(name: str) -> None:
 def test_a_balanced_body_has_no_sides() -> None:
     """All numbers are zero for a balanced top."""
     discrete = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), STEP)
-    found = nh.half_planes(discrete, momentum=np.ones((4, 3)))
-    assert not np.any(found)
-    assert found.side.shape == (4,)
+    result = nh.half_planes(discrete, momentum=np.ones((4, 3)))
+    assert not np.any(result)
+    assert result.side.shape == (4,)
 
 
 # Other systems and maps, none or two arguments, and wrong shapes are named.
@@ -143,15 +143,15 @@ def test_difference_against_fifty_digits(name: str) -> None:
     J, M, g = CASES[name]
     discrete, energy = _sleigh(J, M, g)
     mu = nh.flow_obstruction(discrete, energy, samples=2).multiplier
-    found, exact = [], []
+    result, exact = [], []
     with mpmath.workdps(50):
         for angle in (0.1, 0.4):
             r = np.sqrt(2 * energy) * np.array([np.sqrt(J + M) * np.cos(angle), np.sin(angle)])
             before, after = _phases(discrete, mu, r)
-            found.append(after - before)
+            result.append(after - before)
             exact.append(float(_difference(J, M, r)))
-    assert np.abs(np.subtract(found, exact)).max() <= 1e-12
-    assert abs(found[0] - found[1]) > 0.1 * nh.flow_obstruction(discrete, energy).amplitude
+    assert np.abs(np.subtract(result, exact)).max() <= 1e-12
+    assert abs(result[0] - result[1]) > 0.1 * nh.flow_obstruction(discrete, energy).amplitude
 
 
 @pytest.mark.parametrize(("name", "amplitude"), [("heavy", 4.46e-3), ("light", 2.70e-4)])
@@ -165,9 +165,9 @@ def test_the_map_of_the_sleigh_is_not_that_of_a_flow(name: str, amplitude: float
 def test_the_map_of_the_top_is_not_that_of_a_flow() -> None:
     """Nor is that of a regular top, below its saddle."""
     discrete = nh.discretize(nh.SuslovTop([[1.0, 0.0, 0.6], [0.0, 0.5, 0.0], [0.6, 0.0, 0.6]]), 1.0)
-    found = nh.critical_energies(discrete)
-    assert found.regular
-    assert nh.flow_obstruction(discrete, 0.95 * found.saddle).amplitude > 2e-3
+    result = nh.critical_energies(discrete)
+    assert result.regular
+    assert nh.flow_obstruction(discrete, 0.95 * result.saddle).amplitude > 2e-3
 
 
 def test_it_is_beyond_all_orders() -> None:
@@ -194,8 +194,8 @@ def _spread(h: float) -> Any:
     first = mpmath.mpf("0.1")
     pi, p = _following(mpmath.mpf(J), a, along(first))
     period = mpmath.asinh(p * mpmath.sqrt(inertia) / pi) - first
-    found = [_difference(J, M, along(first + period * k / 8)) for k in range(8)]
-    return max(found) - min(found)
+    result = [_difference(J, M, along(first + period * k / 8)) for k in range(8)]
+    return max(result) - min(result)
 
 
 @pytest.mark.profile("problems", instead="test_difference_against_fifty_digits")

@@ -39,12 +39,12 @@ def test_it_is_an_orbit(name: str) -> None:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_it_reaches_both_limits(name: str) -> None:
     """At both ends the velocity is the limit that `asymptotics` gives, and the last rotation inverts the first."""
-    found = _traced(name)
-    first, last = found.orbit.body_velocity[[0, -1]]
-    assert np.abs(first - found.limits.velocity_before).max() <= 1e-13
-    assert np.abs(last - found.limits.velocity_after).max() <= 1e-13
-    turning = slice(-1) if found.orbit.system.group.is_rigid and "sleigh" in name else slice(None)
-    W = found.orbit.displacement[[0, -1], turning, turning]
+    result = _traced(name)
+    first, last = result.orbit.body_velocity[[0, -1]]
+    assert np.abs(first - result.limits.velocity_before).max() <= 1e-13
+    assert np.abs(last - result.limits.velocity_after).max() <= 1e-13
+    turning = slice(-1) if result.orbit.system.group.is_rigid and "sleigh" in name else slice(None)
+    W = result.orbit.displacement[[0, -1], turning, turning]
     if name != "turning sleigh 3":  # whose advance u is kept
         assert np.abs(W[0] @ W[1] - np.eye(len(W[0]))).max() <= 1e-12
 
@@ -167,12 +167,12 @@ def test_sleigh_levels_at_their_critical_energies(fraction: float) -> None:
     """Just below and above h^2 E = 2M a second oval appears; just above I^2/(2J) both have become one curve."""
     sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5 * fraction)
     M, whole = 0.25 * fraction**2, 1.0 + 0.25 * fraction**2
-    found = [
+    result = [
         len(nh.invariant_curve(nh.discretize(sleigh, 0.5), 4 * level * side).components)
         for level in (2 * M, whole**2 / 2)
         for side in (1 - 1e-9, 1 + 1e-9)
     ]
-    assert found == [1, 2, 2, 1]
+    assert result == [1, 2, 2, 1]
 
 
 @pytest.mark.parametrize("discrete", [HALF, TILTED, BALANCED, SLEIGH, HEAVY, EVEN])
@@ -183,8 +183,8 @@ def test_orbits_run_on_their_curve(discrete: nh.Discretization) -> None:
     for point in planar_variety(discrete.system).points(orbit.displacement):
         if isinstance(discrete.system, nh.SuslovTop):
             upper = point * (1.0 if point[0] >= 0 else -1.0)
-            found = curve.over(np.arctan2(upper[2], upper[1]))
-            assert np.abs(found - upper).max(axis=1).min() < 1e-10
+            result = curve.over(np.arctan2(upper[2], upper[1]))
+            assert np.abs(result - upper).max(axis=1).min() < 1e-10
         else:
             assert np.abs(curve.over(point[0]) - point).max(axis=1).min() < 1e-10
 

@@ -28,16 +28,16 @@ def test_jacobian_is_that_of_the_map(name: str) -> None:
     discrete = nh.discretize(SYSTEMS[name], STEP)
     start = 0.4 * np.array([1.0, -0.7, 0.5])[: len(discrete.system.constraint_subspace)]
     orbit = nh.simulate(discrete, restricted_velocity=start, steps=4, reconstruct=False)
-    found, r = nh.invariant_measure(discrete), orbit.restricted_momentum[0]
+    result, r = nh.invariant_measure(discrete), orbit.restricted_momentum[0]
     for steps in (1, 4):
 
         def after(r: np.ndarray, steps: int = steps) -> np.ndarray:
             return nh.simulate(discrete, momentum=r, steps=steps, reconstruct=False).restricted_momentum[-1]
 
         volume = abs(np.linalg.det(derivatives(after, r)))
-        assert abs(np.exp(found.log_volume(orbit)[steps]) - volume) <= 1e-8
-    assert found.jacobian(orbit.displacement[0]) == pytest.approx(np.exp(found.log_volume(orbit)[1]), rel=1e-14)
-    assert abs(found.log_volume(orbit)[-1]) > 1e-3
+        assert abs(np.exp(result.log_volume(orbit)[steps]) - volume) <= 1e-8
+    assert result.jacobian(orbit.displacement[0]) == pytest.approx(np.exp(result.log_volume(orbit)[1]), rel=1e-14)
+    assert abs(result.log_volume(orbit)[-1]) > 1e-3
 
 
 @pytest.mark.parametrize("name", PLANE)
@@ -68,33 +68,33 @@ def test_a_free_body_keeps_volumes(group: nh.SO) -> None:
 def test_the_witness_is_the_jacobian_at_an_equilibrium(name: str) -> None:
     """There one step shrinks volumes by the witness, and expands them by its inverse at the opposite equilibrium."""
     discrete = nh.discretize(SYSTEMS[name], STEP)
-    found = nh.invariant_measure(discrete, energy=0.4)
-    assert not found.every_density
-    assert 0 < abs(found.witness) < 1 - 1e-3
+    result = nh.invariant_measure(discrete, energy=0.4)
+    assert not result.every_density
+    assert 0 < abs(result.witness) < 1 - 1e-3
     for sign in (1, -1):
-        start = nh.simulate(discrete, body_velocity=sign * found.velocity, steps=1)
-        assert found.jacobian(start.displacement[0]) == pytest.approx(found.witness**sign, rel=1e-13)
+        start = nh.simulate(discrete, body_velocity=sign * result.velocity, steps=1)
+        assert result.jacobian(start.displacement[0]) == pytest.approx(result.witness**sign, rel=1e-13)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_witness_of_the_flow_is_its_divergence(name: str) -> None:
     """It is the trace of the linearized field at the equilibrium, and the limit of log(witness)/h of the map."""
     system = SYSTEMS[name]
-    found = nh.invariant_measure(system, 0.4)
-    slopes = derivatives(momentum_rate(system), system.restrict(system.inertia_operator @ found.velocity))
-    assert found.witness == pytest.approx(np.trace(slopes), abs=1e-9)
-    assert found.witness < 0
+    result = nh.invariant_measure(system, 0.4)
+    slopes = derivatives(momentum_rate(system), system.restrict(system.inertia_operator @ result.velocity))
+    assert result.witness == pytest.approx(np.trace(slopes), abs=1e-9)
+    assert result.witness < 0
     h = 1e-3
     of_map = nh.invariant_measure(nh.discretize(system, h), 0.4).witness
-    assert np.log(of_map) / h == pytest.approx(found.witness, rel=1e-5)
+    assert np.log(of_map) / h == pytest.approx(result.witness, rel=1e-5)
 
 
 @pytest.mark.parametrize("name", PLANE)
 def test_density_of_the_flow(name: str) -> None:
     """The divergence of density times field vanishes at random momenta; that of the field alone does not."""
-    rate, found, plain = momentum_rate(PLANE[name]), nh.invariant_measure(PLANE[name]), []
+    rate, result, plain = momentum_rate(PLANE[name]), nh.invariant_measure(PLANE[name]), []
     for r in np.random.default_rng(4).normal(size=(20, 2)):
-        terms = np.diag(derivatives(lambda p: rate(p) * found.density(p), r, 1e-5))
+        terms = np.diag(derivatives(lambda p: rate(p) * result.density(p), r, 1e-5))
         assert abs(terms.sum()) <= 1e-8 * max(1.0, *np.abs(terms))  # of the difference quotients
         plain.append(abs(np.trace(derivatives(rate, r))))
     assert max(plain) > 0.1
@@ -133,9 +133,9 @@ def test_balanced_bodies_keep_every_density(body: AbstractLLSystem) -> None:
     discrete = nh.discretize(body, STEP)
     orbit = nh.simulate(discrete, restricted_velocity=(0.5, 0.7), steps=5)
     for motion in (body, discrete):
-        found = nh.invariant_measure(motion)
-        assert (found.every_density, found.witness, found.velocity) == (True, None, None)
-        assert np.array_equal(found.density(orbit.momentum), np.ones(6))
+        result = nh.invariant_measure(motion)
+        assert (result.every_density, result.witness, result.velocity) == (True, None, None)
+        assert np.array_equal(result.density(orbit.momentum), np.ones(6))
     assert np.abs(np.ptp(orbit.restricted_momentum, axis=0)).max() <= 1e-15
     assert np.abs(nh.invariant_measure(discrete).log_volume(orbit)).max() <= 1e-15
 
@@ -179,14 +179,14 @@ def test_conserved_components(name: str) -> None:
     Components along a constraint in space are among the spatial ones; in the body momenta are known along it alone.
     """
     system, body, spatial = (LEFT | RIGHT)[name]
-    found, rows = conserved_momenta(system), system.constraint_subspace
-    assert (len(found.body), len(found.spatial)) == (body, spatial)
+    result, rows = conserved_momenta(system), system.constraint_subspace
+    assert (len(result.body), len(result.spatial)) == (body, spatial)
     in_body, in_space = np.stack([_rates(system, seed) for seed in range(60)], axis=1)
-    known = np.eye(system.group.dim) if system.is_spatial else np.linalg.pinv(rows) @ rows
-    _check(system, found.body, in_body @ known, 0 if system.is_spatial else len(system.annihilator))
-    _check(system, found.spatial, in_space, 0)
+    reference = np.eye(system.group.dim) if system.is_spatial else np.linalg.pinv(rows) @ rows
+    _check(system, result.body, in_body @ reference, 0 if system.is_spatial else len(system.annihilator))
+    _check(system, result.spatial, in_space, 0)
     if system.is_spatial:
-        assert np.linalg.matrix_rank(np.concatenate([found.spatial, rows]), tol=1e-9) == len(found.spatial)
+        assert np.linalg.matrix_rank(np.concatenate([result.spatial, rows]), tol=1e-9) == len(result.spatial)
 
 
 def _check(system: AbstractSystem, rows: np.ndarray, rates: np.ndarray, without: int) -> None:
@@ -219,8 +219,8 @@ def test_discrete_map_keeps_the_body_components(name: str) -> None:
     """Momenta along d stay for 200 large steps, to rounding; of a top of revolution all in space, without reactions."""
     system = LEFT[name][0]
     orbit = nh.simulate(nh.discretize(system, 0.4), restricted_velocity=(0.7, -0.4), steps=200)
-    kept = orbit.momentum @ conserved_momenta(system).body.T
-    assert np.abs(kept - kept[0]).max() < 200 * np.finfo(np.float64).eps * np.abs(orbit.momentum).max()
+    components = orbit.momentum @ conserved_momenta(system).body.T
+    assert np.abs(components - components[0]).max() < 200 * np.finfo(np.float64).eps * np.abs(orbit.momentum).max()
     drift = np.abs(orbit.spatial_momentum - orbit.spatial_momentum[0]).max()
     assert drift < 1e-12 if name == "balanced top of revolution" else drift > 0.1
 

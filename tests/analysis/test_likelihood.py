@@ -16,7 +16,7 @@ from nonholo.analysis.inverse._profile import Minimum, least_squares_at, profile
 FREE = np.full(2, -np.inf), np.full(2, np.inf)
 
 
-def _search(y: np.ndarray, few: int, known: tuple[float, ...], loss: str = "linear") -> tuple[Search, np.ndarray]:
+def _search(y: np.ndarray, few: int, reference: tuple[float, ...], loss: str = "linear") -> tuple[Search, np.ndarray]:
     """Return the fit of a + b t to numbers of which the first few are turns, the rest rates, and its columns."""
     columns = np.stack([np.ones(len(y)), np.linspace(0.0, 1.0, len(y))], axis=1)
     parts = {"turn": slice(0, few), "rate": slice(few, len(y))}
@@ -25,20 +25,20 @@ def _search(y: np.ndarray, few: int, known: tuple[float, ...], loss: str = "line
 
     def missed(numbers: np.ndarray, _starts: object, _poses: object, kinds: dict) -> dict:
         none = np.zeros((1, rows, 1, 0))
-        found = {
+        result = {
             kind: (kinds[kind] - (columns @ numbers)[None, :, None], -columns[None, :, None], none) for kind in kinds
         }
-        return dict(sorted(found.items()))  # as JAX does
+        return dict(sorted(result.items()))  # as JAX does
 
     kinds = {kind: np.full((1, rows, 1), np.nan) for kind in parts}
     for kind, part in parts.items():
         kinds[kind][0, part, 0] = y[part]
     problem = Problem(missed, np.zeros((1, 3, 3)), kinds, 2, (1, 0))
-    return Search(problem, FREE, lambda _: None, loss, np.array(known)), columns
+    return Search(problem, FREE, lambda _: None, loss, np.array(reference)), columns
 
 
-def _run(y: np.ndarray, few: int, known: tuple[float, ...]) -> tuple[Solution, np.ndarray]:
-    search, columns = _search(y, few, known)
+def _run(y: np.ndarray, few: int, reference: tuple[float, ...]) -> tuple[Solution, np.ndarray]:
+    search, columns = _search(y, few, reference)
     return search.run(np.zeros(2)), columns
 
 
@@ -60,16 +60,16 @@ def test_swings_out_of_step_are_found(guess: float) -> None:
         return {"rate": (kinds["rate"] - a * np.sin(w * time)[None, :, None], slope[None, :, None], none)}
 
     problem = Problem(missed, np.zeros((1, 3, 3)), {"rate": y[None, :, None]}, 2, (1, 0))
-    found = Search(problem, FREE, lambda _: None, "linear", np.array([np.nan])).run(np.array([guess, 1.0]))
-    np.testing.assert_allclose(found.point, [2 * np.pi, 1.0], atol=2e-4)
-    np.testing.assert_allclose(found.noise, 1e-3, rtol=0.1)
+    result = Search(problem, FREE, lambda _: None, "linear", np.array([np.nan])).run(np.array([guess, 1.0]))
+    np.testing.assert_allclose(result.point, [2 * np.pi, 1.0], atol=2e-4)
+    np.testing.assert_allclose(result.noise, 1e-3, rtol=0.1)
 
 
 def test_levels_have_the_largest_restricted_likelihood() -> None:
     """Seven numbers of one kind and forty of another: levels are where the restricted likelihood is largest."""
     rng, few = np.random.default_rng(5), 7
     y = 1.0 + rng.normal(size=47) * np.where(np.arange(47) < few, 0.02, 0.3)
-    found, columns = _run(y, few, (np.nan, np.nan))
+    result, columns = _run(y, few, (np.nan, np.nan))
 
     def lack(logarithms: np.ndarray) -> float:
         w = np.repeat(np.exp(-2 * logarithms), [few, 47 - few])
@@ -78,15 +78,15 @@ def test_levels_have_the_largest_restricted_likelihood() -> None:
         return float(-np.log(w).sum() + np.linalg.slogdet(information)[1] + w @ rest**2) / 2
 
     best = minimize(lack, np.log([0.02, 0.3]), method="Nelder-Mead", options={"xatol": 1e-7, "fatol": 1e-12})
-    np.testing.assert_allclose(found.noise, np.exp(best.x), rtol=1e-3)  # levels settle to 1e-4
-    assert found.is_settled
+    np.testing.assert_allclose(result.noise, np.exp(best.x), rtol=1e-3)  # levels settle to 1e-4
+    assert result.is_settled
 
 
 def test_errors_of_one_kind_are_those_of_the_usual_line() -> None:
     """Of one kind covariance and degrees of freedom are those of linregress of scipy: nothing is added twice."""
     y = 0.5 * np.linspace(0.0, 1.0, 12) + np.random.default_rng(2).normal(size=12)
-    found, columns = _run(y, 0, (np.nan,))
-    covariance, plain, degrees = found.estimate.covariance(np.array([True]))
+    result, columns = _run(y, 0, (np.nan,))
+    covariance, plain, degrees = result.estimate.covariance(np.array([True]))
     line = stats.linregress(columns[:, 1], y)
     np.testing.assert_allclose(np.sqrt(covariance.diagonal()), [line.intercept_stderr, line.stderr], rtol=1e-6)
     np.testing.assert_allclose(covariance, plain, rtol=1e-9)
@@ -96,8 +96,8 @@ def test_errors_of_one_kind_are_those_of_the_usual_line() -> None:
 def test_known_noise_is_as_sure_as_normal() -> None:
     """With all levels given errors are those of weighted squares, with infinite degrees of freedom."""
     y = np.random.default_rng(3).normal(size=20)
-    found, columns = _run(y, 7, (0.1, 2.0))
-    covariance, _, degrees = found.estimate.covariance(np.array([False, False]))
+    result, columns = _run(y, 7, (0.1, 2.0))
+    covariance, _, degrees = result.estimate.covariance(np.array([False, False]))
     w = np.repeat([100.0, 0.25], [7, 13])
     np.testing.assert_allclose(covariance, np.linalg.inv(columns.T @ (w[:, None] * columns)), rtol=1e-9)
     assert (degrees == np.inf).all()
@@ -110,15 +110,15 @@ def test_few_numbers_of_a_kind_have_few_degrees() -> None:
     The standard deviation of the share is 0.5 %: 1.6 % are three.
     """
     rng, truth = np.random.default_rng(11), np.array([1.0, 0.5])
-    held = []
+    coverage = []
     for _ in range(2000):
         noise = np.where(np.arange(25) < 5, 0.05, 0.3) * rng.normal(size=25)
         search, _ = _search(1.0 + 0.5 * np.linspace(0.0, 1.0, 25) + noise, 5, (np.nan, np.nan))
-        found = search.run(truth)
-        covariance, _, degrees = found.estimate.covariance(np.array([True, True]))
-        off = np.abs(found.point - truth) / np.sqrt(covariance.diagonal())
-        held.append([off < stats.t.ppf(0.975, degrees), off < stats.norm.ppf(0.975)])
-    by_student, by_normal = np.mean(held, axis=0)
+        result = search.run(truth)
+        covariance, _, degrees = result.estimate.covariance(np.array([True, True]))
+        off = np.abs(result.point - truth) / np.sqrt(covariance.diagonal())
+        coverage.append([off < stats.t.ppf(0.975, degrees), off < stats.norm.ppf(0.975)])
+    by_student, by_normal = np.mean(coverage, axis=0)
     np.testing.assert_allclose(by_student, 0.95, atol=0.016)
     assert (by_normal < by_student).all()
     assert by_normal[0] < 0.93
@@ -234,11 +234,11 @@ def test_side_may_end_with_the_model() -> None:
 def test_fit_is_kept_without_its_functions() -> None:
     """What is pickled, of a lambda too, has all but the profile, which says so."""
     minimum, _ = _line(0.5)
-    found = Fit({"a": 1.0, "b": 0.5}, np.eye(2), None, None, (), {}, "converged", np.full(2, 13.0), 13, minimum)
-    found = pickle.loads(pickle.dumps(found))  # noqa: S301
-    assert found.parameters == {"a": 1.0, "b": 0.5}
+    result = Fit({"a": 1.0, "b": 0.5}, np.eye(2), None, None, (), {}, "converged", np.full(2, 13.0), 13, minimum)
+    result = pickle.loads(pickle.dumps(result))  # noqa: S301
+    assert result.parameters == {"a": 1.0, "b": 0.5}
     with pytest.raises(ValueError, match="Fit again"):
-        found.profile("b")
+        result.profile("b")
 
 
 def test_better_minimum_is_said() -> None:

@@ -27,8 +27,8 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Any]] = {
 def _walked(body: Any, rng: np.random.Generator, steps: int, **start: np.ndarray) -> nh.Orbit:
     """Run with a random real value at each step."""
 
-    def chosen(found: Any, _: np.ndarray) -> int | None:
-        return rng.choice(np.flatnonzero(found.is_real)) if found.is_real.any() else None
+    def chosen(result: Any, _: np.ndarray) -> int | None:
+        return rng.choice(np.flatnonzero(result.is_real)) if result.is_real.any() else None
 
     run = {"branch": chosen, "throw": False, "reconstruct": False}
     return nh.simulate(nh.discretize(body, 1.0), **start, steps=steps, **run)
@@ -56,8 +56,8 @@ def test_random_walks_have_the_limits_of_asymptotics(name: str) -> None:
 @pytest.mark.parametrize("n", [3, 6])
 def test_above_the_line_every_walk_ends(n: int) -> None:
     """Above the line of equilibria tops take no more steps than the bound, whatever values they take."""
-    rng, taken = np.random.default_rng(n), []
-    while len(taken) < 8:
+    rng, lengths = np.random.default_rng(n), []
+    while len(lengths) < 8:
         top = nh.SuslovTop(mass_tensor(nh.SO(n), rng))
         turn = rng.normal(size=top.rank)
         W = top.group.exp(rng.uniform(1.2, 2.8) * turn / np.linalg.norm(turn) @ top.constraint_subspace)
@@ -67,10 +67,10 @@ def test_above_the_line_every_walk_ends(n: int) -> None:
             b, c = np.linalg.eigvalsh(top.constrained_inertia), np.linalg.norm(top.coupling)
             bound = 2 * ratio / (ratio - 1) ** 2 * (b[-1] / c + c / b[0])
             orbit = _walked(top, rng, int(bound) + 1, displacement=W)
-            taken.append(len(orbit))
+            lengths.append(len(orbit))
             assert orbit.outcome == nh.Outcome.no_real_branch
             assert len(orbit) <= bound
-    assert max(taken) >= 2
+    assert max(lengths) >= 2
 
 
 def test_no_limits_above_the_line() -> None:
@@ -109,14 +109,14 @@ SLEIGHS = [(1.0, 1.0, 0.5, 0.0), (0.9, 0.4, 0.7, 0.35), (1.5, 0.6, -0.5, 0.2), (
 def test_turns_of_a_flow(parameters: tuple, omega: float) -> None:
     """The heading of a long flow turns as said, and its direction of motion by half a turn less, modulo full ones."""
     sleigh, start = nh.ChaplyginSleigh(*parameters), {"restricted_velocity": (omega, 0.3), "method": "closed_form"}
-    found = nh.asymptotics(nh.flow(sleigh, times=[0.0, 1.0], **start))
+    result = nh.asymptotics(nh.flow(sleigh, times=[0.0, 1.0], **start))
     ends = [nh.flow(sleigh, times=[0.0, t, 1.01 * t], **start) for t in (-1e4, 1e4)]
-    assert ends[1].heading[-1] - ends[0].heading[-1] == pytest.approx(found.heading_turn, rel=1e-14)
-    assert nh.asymptotics(sleigh).heading_turn == abs(found.heading_turn)
+    assert ends[1].heading[-1] - ends[0].heading[-1] == pytest.approx(result.heading_turn, rel=1e-14)
+    assert nh.asymptotics(sleigh).heading_turn == abs(result.heading_turn)
     directions = [np.array([1, 1j]) @ np.diff(end.position[1:], axis=0)[0] for end in ends]
     turned = np.angle(-directions[1] / directions[0])  # the early one is taken against time
-    assert np.angle(np.exp(1j * (found.motion_turn - turned))) == pytest.approx(0.0, abs=1e-12)
-    for end, limit in zip(ends, (found.velocity_before, found.velocity_after), strict=True):
+    assert np.angle(np.exp(1j * (result.motion_turn - turned))) == pytest.approx(0.0, abs=1e-12)
+    for end, limit in zip(ends, (result.velocity_before, result.velocity_after), strict=True):
         assert np.abs(end.body_velocity[-1] - limit).max() <= 1e-14
 
 
@@ -125,11 +125,11 @@ def test_turn_of_the_map_is_second_order() -> None:
     exact, errors = nh.asymptotics(SLEIGH).heading_turn, []
     for h in (0.2, 0.1, 0.05):
         orbit = nh.simulate(nh.discretize(SLEIGH, h), restricted_velocity=(0.8, 0.1), steps=5)
-        found = nh.asymptotics(orbit)
-        assert found.persists
-        errors.append(found.heading_turn - exact)
+        result = nh.asymptotics(orbit)
+        assert result.persists
+        errors.append(result.heading_turn - exact)
         speed = np.sqrt(2 * orbit.energy[0] / SLEIGH.mass)
-        assert np.abs(found.velocity_after - [0.0, speed, 0.0]).max() <= 1e-14
+        assert np.abs(result.velocity_after - [0.0, speed, 0.0]).max() <= 1e-14
     assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() <= 0.1
 
 
@@ -144,14 +144,14 @@ def test_axes_of_a_top(top: nh.SuslovTop, kind: str) -> None:
     else:
         orbit, later = (nh.simulate(nh.discretize(top, 0.2), steps=steps, **start) for steps in (10, 1000))
         tail = orbit[3:]
-    found, same = nh.asymptotics(orbit), nh.asymptotics(tail)
-    assert np.abs(found.axis_after + found.axis_before).max() <= 1e-15
-    assert np.abs(found.axis_after - nh.asymptotics(top).axis_after).max() <= 1e-14
-    assert np.abs(later.body_velocity[-1] - found.velocity_after).max() <= 1e-8
+    result, same = nh.asymptotics(orbit), nh.asymptotics(tail)
+    assert np.abs(result.axis_after + result.axis_before).max() <= 1e-15
+    assert np.abs(result.axis_after - nh.asymptotics(top).axis_after).max() <= 1e-14
+    assert np.abs(later.body_velocity[-1] - result.velocity_after).max() <= 1e-8
     spatial = later.configuration[-1] @ later.body_velocity[-1]
-    assert np.abs(spatial / np.linalg.norm(spatial) - found.spatial_axis_after).max() <= 1e-7
+    assert np.abs(spatial / np.linalg.norm(spatial) - result.spatial_axis_after).max() <= 1e-7
     for name in ("spatial_axis_before", "spatial_axis_after"):
-        assert np.abs(getattr(found, name) - getattr(same, name)).max() <= 1e-8
+        assert np.abs(getattr(result, name) - getattr(same, name)).max() <= 1e-8
 
 
 def test_turn_of_an_orbit_without_poses() -> None:
@@ -159,7 +159,8 @@ def test_turn_of_an_orbit_without_poses() -> None:
     discrete = nh.discretize(SLEIGH, 0.1)
     for omega in (0.8, -0.8):
         posed, bare = (
-            nh.simulate(discrete, restricted_velocity=(omega, 0.1), steps=7, reconstruct=kept) for kept in (True, False)
+            nh.simulate(discrete, restricted_velocity=(omega, 0.1), steps=7, reconstruct=poses)
+            for poses in (True, False)
         )
         turn = nh.asymptotics(posed).heading_turn
         assert nh.asymptotics(bare).heading_turn == turn
@@ -174,10 +175,10 @@ def test_limits_in_higher_dimensions(name: str) -> None:
     system = ATTRACTING[name]
     start = 0.4 * np.array([1.0, -0.7, 0.5, 0.8, -0.3])[: system.rank]
     orbit = nh.simulate(nh.discretize(system, 0.2), restricted_velocity=start, steps=20_000, save_every=20_000)
-    found = nh.asymptotics(orbit)
-    assert found.persists == (name == "top 6")  # Theorem 9.5: below the first fold
-    assert np.abs(orbit.body_velocity[-1] - found.velocity_after).max() <= 1e-8
-    assert system.constrained_energy(found.velocity_before @ system.inertia_operator) == pytest.approx(orbit.energy[0])
+    result = nh.asymptotics(orbit)
+    assert result.persists == (name == "top 6")  # Theorem 9.5: below the first fold
+    assert np.abs(orbit.body_velocity[-1] - result.velocity_after).max() <= 1e-8
+    assert system.constrained_energy(result.velocity_before @ system.inertia_operator) == pytest.approx(orbit.energy[0])
 
 
 def test_motions_that_stay() -> None:
@@ -189,8 +190,8 @@ def test_motions_that_stay() -> None:
     assert circling.heading_turn is None
     assert nh.asymptotics(nh.ChaplyginSleigh(1.0, 1.0, 0.0)).heading_turn is None
     top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))
-    kept = nh.asymptotics(nh.simulate(nh.discretize(top, 0.1), restricted_velocity=(0.3, 0.4), steps=3))
-    assert np.array_equal(kept.spatial_axis_before, kept.spatial_axis_after)
+    limits = nh.asymptotics(nh.simulate(nh.discretize(top, 0.1), restricted_velocity=(0.3, 0.4), steps=3))
+    assert np.array_equal(limits.spatial_axis_before, limits.spatial_axis_after)
 
 
 def _of_another_map() -> nh.Orbit:

@@ -55,12 +55,12 @@ def steady_roll(lean: float, yaw: float) -> float:
 @pytest.mark.parametrize("roll", [0.5, 3.0, 12.0])
 def test_an_upright_disk_is_stable_above_its_critical_speed(roll: float) -> None:
     r"""$\lambda^2 (A + mR^2) = mgR - C(C + mR^2)\Omega^2/A$: the thin disk of textbooks, $\Omega^2 > g/3R$."""
-    found = nh.linearize(DISK, **rolling(0.0, 0.0, roll))
+    result = nh.linearize(DISK, **rolling(0.0, 0.0, roll))
     square = (M * G * R - AXIS * (AXIS + M * R**2) * roll**2 / DIAMETER) / (DIAMETER + M * R**2)
-    assert found.names == ("lean", "yaw'", "lean'", "roll'")
-    assert found.ignorable == ("x", "y", "yaw", "roll")
+    assert result.names == ("lean", "yaw'", "lean'", "roll'")
+    assert result.ignorable == ("x", "y", "yaw", "roll")
     wanted = np.array([np.sqrt(square + 0j), 0, 0, -np.sqrt(square + 0j)])
-    distances = np.abs(found.eigenvalues[:, None] - wanted)
+    distances = np.abs(result.eigenvalues[:, None] - wanted)
     assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-12  # a difference of 22 and 22 at 3
 
 
@@ -88,34 +88,34 @@ def states_near(
 
     Other velocities are found from the constraint at a place ahead, which a midpoint is.
     """
-    kept = [system.coordinates.index(name) for name in names if not name.endswith("'")]
+    columns = [system.coordinates.index(name) for name in names if not name.endswith("'")]
     free = [system.coordinates.index(name[:-1]) for name in names if name.endswith("'")]
     tied = np.setdiff1d(np.arange(system.dimension), free)
 
     def varied(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         at, moving = q.copy(), v.copy()
-        at[kept], moving[free] = z[: len(kept)], z[len(kept) :]
+        at[columns], moving[free] = z[: len(columns)], z[len(columns) :]
         for _ in range(30 if ahead else 1):  # the midpoint depends on what is found
             with jax.enable_x64(True):
                 rows = np.asarray(system.plain.constraint_forms(jnp.asarray(at + ahead * moving)))
             moving[tied] = -np.linalg.solve(rows[:, tied], rows[:, free] @ moving[free])
         return at, moving
 
-    return varied, lambda at, moving: np.concatenate([at[kept], moving[free]])
+    return varied, lambda at, moving: np.concatenate([at[columns], moving[free]])
 
 
 @pytest.mark.profile("routes", keep=["upright disk", "disk on a circle"])
 @pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
 def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: dict[str, Any]) -> None:
     """From the definition: vary kept states, find the other velocities from the constraint, difference the rates."""
-    found, field = nh.linearize(system, **start), nh.vector_field(system)
+    result, field = nh.linearize(system, **start), nh.vector_field(system)
     q, v = (np.asarray(start[name], float) for name in ("configuration", "body_velocity"))
-    varied, read = states_near(system, found.names, q, v)
+    varied, read = states_near(system, result.names, q, v)
 
     def rates(z: np.ndarray) -> np.ndarray:
         return read(*np.split(field(0.0, np.concatenate(varied(z))), 2))
 
-    np.testing.assert_allclose(found.matrix, derivatives(rates, read(q, v), 8e-3), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(result.matrix, derivatives(rates, read(q, v), 8e-3), rtol=0, atol=1e-9)
 
 
 @pytest.mark.profile("routes", instead="test_multipliers_tend_to_rates")
@@ -124,16 +124,16 @@ def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
     """From the definition: vary kept states, find displacements on the discrete constraint, difference a step."""
     (system, start), h = CASES[name], 0.05
     discrete = nh.discretize(system, h)
-    found, first = nh.linearize(discrete, **start), nh.simulate(discrete, steps=1, **start)
+    result, first = nh.linearize(discrete, **start), nh.simulate(discrete, steps=1, **start)
     q, v = first.configuration[0], first.body_velocity[0]
-    varied, read = states_near(system, found.names, q, v, h / 2)
+    varied, read = states_near(system, result.names, q, v, h / 2)
 
     def after(z: np.ndarray) -> np.ndarray:
         at, moving = varied(z)
         orbit = nh.simulate(discrete, configuration=at, displacement=h * moving, steps=1)
         return read(orbit.configuration[1], orbit.body_velocity[1])
 
-    np.testing.assert_allclose(found.matrix, derivatives(after, read(q, v), 8e-3), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(result.matrix, derivatives(after, read(q, v), 8e-3), rtol=0, atol=1e-9)
 
 
 def test_multipliers_tend_to_rates() -> None:
@@ -153,9 +153,9 @@ def test_transverse_rates_of_tops_of_any_dimension() -> None:
     top = nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1)
     for subject in (top, nh.discretize(top, 0.2)):
         states = nh.equilibria(subject, energy=0.7)
-        found = nh.linearize(subject, body_velocity=states.velocity).eigenvalues
-        known, still = (states.rates, 0.0) if states.multipliers is None else (states.multipliers, 1.0)
-        np.testing.assert_allclose(np.sort(np.real(found)), np.sort(np.append(known, still)), rtol=0, atol=1e-12)
+        result = nh.linearize(subject, body_velocity=states.velocity).eigenvalues
+        reference, still = (states.rates, 0.0) if states.multipliers is None else (states.multipliers, 1.0)
+        np.testing.assert_allclose(np.sort(np.real(result)), np.sort(np.append(reference, still)), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("spin", [3.0, 3.7, 5.0])
@@ -164,11 +164,11 @@ def test_a_sleeping_top(spin: float) -> None:
     A, C, weight = 1.2, 1.0, 2.943
     top = nh.Forced(nh.RigidBody(np.diag([0.5, 0.5, 0.7])), nh.Gravity([0.0, 0.0, -9.81], [0.0, 0.0, 0.3]))
     s = np.roots([A, -C * spin, weight])
-    found = nh.linearize(top, body_velocity=(0.0, 0.0, spin))
-    assert found.names == ("xi1", "xi2", "xi3", "r1", "r2", "r3")
+    result = nh.linearize(top, body_velocity=(0.0, 0.0, spin))
+    assert result.names == ("xi1", "xi2", "xi3", "r1", "r2", "r3")
     for wanted in np.concatenate([1j * (s - spin), -1j * (np.conj(s) - spin), [0]]):
-        assert np.abs(found.eigenvalues - wanted).min() < 1e-12
-    assert bool(np.real(found.eigenvalues[0]) > 0.1) == bool((C * spin) ** 2 < 4 * A * weight)
+        assert np.abs(result.eigenvalues - wanted).min() < 1e-12
+    assert bool(np.real(result.eigenvalues[0]) > 0.1) == bool((C * spin) ** 2 < 4 * A * weight)
 
 
 @pytest.mark.profile("routes", instead="test_a_sleeping_top")
@@ -192,24 +192,24 @@ def test_a_bead_on_a_turning_hoop() -> None:
     assert bottom.names == ("bead", "bead'")
     np.testing.assert_allclose(bottom.eigenvalues[0] ** 2, speed**2 - G, rtol=1e-13)
     aside = np.arccos(G / speed**2)
-    found = nh.linearize(system, configuration=(aside, 0.0), body_velocity=still).eigenvalues
-    np.testing.assert_allclose(found[0] ** 2, -((speed * np.sin(aside)) ** 2), rtol=1e-12)
+    result = nh.linearize(system, configuration=(aside, 0.0), body_velocity=still).eigenvalues
+    np.testing.assert_allclose(result[0] ** 2, -((speed * np.sin(aside)) ** 2), rtol=1e-12)
     with pytest.raises(ValueError, match=r"must be that of a steady motion\. Got rates .*time: 1"):
         nh.linearize(hoop(jnp.sin), configuration=(0.0, 0.0), body_velocity=(0.0, 1.0))
 
 
 def test_modes_and_the_table() -> None:
     """Modes have length one and are multiplied by their eigenvalues; the table has them by name, by their growth."""
-    found = nh.linearize(DISK, **rolling(0.0, 0.0, 0.5))
-    np.testing.assert_allclose(found.matrix @ found.modes, found.modes * found.eigenvalues, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(np.linalg.norm(found.modes, axis=0), 1, rtol=1e-14)
-    assert np.all(np.diff(np.real(found.eigenvalues)) <= 0)
-    table = found.to_pandas()
-    assert tuple(table.columns) == ("eigenvalue", *found.names)
-    np.testing.assert_array_equal(table["lean"], found.modes[0])
+    result = nh.linearize(DISK, **rolling(0.0, 0.0, 0.5))
+    np.testing.assert_allclose(result.matrix @ result.modes, result.modes * result.eigenvalues, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(np.linalg.norm(result.modes, axis=0), 1, rtol=1e-14)
+    assert np.all(np.diff(np.real(result.eigenvalues)) <= 0)
+    table = result.to_pandas()
+    assert tuple(table.columns) == ("eigenvalue", *result.names)
+    np.testing.assert_array_equal(table["lean"], result.modes[0])
     step = nh.linearize(nh.discretize(DISK, 0.05), **rolling(0.0, 0.0, 0.5))
     assert np.all(np.diff(np.abs(step.eigenvalues)) <= 0)
-    assert (found.time_step, step.time_step) == (None, 0.05)
+    assert (result.time_step, step.time_step) == (None, 0.05)
 
 
 TOP = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
@@ -252,13 +252,13 @@ def test_critical_values_of_a_disk_and_a_bead() -> None:
         force=nh.Friction([0.3]),
         parameters={"spin": 1.0},
     )
-    for made, error in ((lambda system: system, 1e-12), (lambda system: nh.discretize(system, 0.01), 1e-9)):
-        found = nh.critical_values(
-            lambda spin, made=made: nh.linearize(made(hoop.with_parameters(spin=spin)), configuration=[0.0]),
+    for family, error in ((lambda system: system, 1e-12), (lambda system: nh.discretize(system, 0.01), 1e-9)):
+        result = nh.critical_values(
+            lambda spin, family=family: nh.linearize(family(hoop.with_parameters(spin=spin)), configuration=[0.0]),
             (0.5, 1.6),
             samples=3,
         )
-        assert np.abs(found - 1.0).max() < error
+        assert np.abs(result - 1.0).max() < error
 
 
 # Neither needs a system.
@@ -323,8 +323,8 @@ def test_what_depends_on_what_does_not_depend_on_units() -> None:
         state, still = np.zeros(6), np.zeros((4, 6))
         names = tuple("xyzuvw")
         scaled = slope * both[:, None] / both / time
-        found = reduced(Local(names, 3, state, still, scaled, rows, np.zeros(1), units, None))
-        results.append((found.states, found.matrix / both[found.states][:, None] * both[found.states] * time))
+        result = reduced(Local(names, 3, state, still, scaled, rows, np.zeros(1), units, None))
+        results.append((result.states, result.matrix / both[result.states][:, None] * both[result.states] * time))
     for states, matrix in results[1:]:
         np.testing.assert_array_equal(states, results[0][0])
         np.testing.assert_allclose(matrix, results[0][1], 1e-12)

@@ -157,12 +157,12 @@ def test_the_momentum_after_a_gait_is_a_quadrature() -> None:
     def gait(time: Array) -> Array:
         return jnp.array([0.9 * jnp.sin(time), 0.2 + 0.6 * jnp.sin(time + 0.4)])
 
-    def made(t: Any) -> Any:
+    def things(t: Any) -> Any:
         phi = mpmath.mpf("0.2") + 0.6 * mpmath.sin(t + mpmath.mpf("0.4"))
         return mpmath.cos(phi) * 0.6 * mpmath.cos(t + mpmath.mpf("0.4")) * 0.9 * mpmath.cos(t) * ROTOR / HALF
 
     with mpmath.workdps(30):
-        gained = 3 * float(str(mpmath.quad(made, mpmath.linspace(0, 2 * mpmath.pi, 9))))
+        gained = 3 * float(str(mpmath.quad(things, mpmath.linspace(0, 2 * mpmath.pi, 9))))
     phase = nh.geometric_phase(board(), gait, period=6 * np.pi, momentum=[0.5])
     cosine = float(np.cos(phase.shape[0, 1]))
     np.testing.assert_allclose(phase.momentum[-1, 0], 0.5 + gained / cosine, rtol=1e-12)
@@ -252,12 +252,12 @@ def test_names_say_where_pose_and_shape_are() -> None:
 def test_brackets_grow_as_known(name: str, growth: tuple[int, ...]) -> None:
     """The car reaches everything; the robot keeps theta - R (right - left) / (2 c), and its directions do."""
     ready = getattr(nh.examples, name)()
-    found = nh.accessibility(ready.system, ready.configuration + np.array([0.3, -0.2, 0.5, 0.1, 0.2]))
-    assert found.growth == growth
-    assert found.is_accessible == (growth[-1] == 5)
+    result = nh.accessibility(ready.system, ready.configuration + np.array([0.3, -0.2, 0.5, 0.1, 0.2]))
+    assert result.growth == growth
+    assert result.is_accessible == (growth[-1] == 5)
     if name == "two_wheeled_robot":
-        kept = np.array([0.0, 0.0, 1.0, -0.25, 0.25])
-        np.testing.assert_allclose(found.directions @ kept, 0.0, rtol=0, atol=1e-12)
+        covector = np.array([0.0, 0.0, 1.0, -0.25, 0.25])
+        np.testing.assert_allclose(result.directions @ covector, 0.0, rtol=0, atol=1e-12)
 
 
 @LONG
@@ -366,9 +366,9 @@ def test_gradients_of_holonomic_constraints_are_rows() -> None:
     np.testing.assert_allclose(ours.matrix(s), rows.matrix(s), 0, 1e-15)
     np.testing.assert_allclose(ours.matrix(s)[..., 0], np.stack([-np.cos(s), -0.5 + 0 * s, 0 * s], 1)[..., 0], 0, 1e-15)
     gear_only = with_forms(lambda q: blade(q)[:1], holonomic=lambda q: jnp.array([q[2] - jnp.sin(q[3])]))
-    found = nh.accessibility(gear_only, np.zeros(4))
-    assert (found.growth, found.is_accessible) == ((2, 3), True)
-    assert np.abs(found.directions @ [0.0, 0.0, 1.0, -1.0]).max() <= 1e-15
+    result = nh.accessibility(gear_only, np.zeros(4))
+    assert (result.growth, result.is_accessible) == ((2, 3), True)
+    assert np.abs(result.directions @ [0.0, 0.0, 1.0, -1.0]).max() <= 1e-15
     as_form = with_forms(lambda q: jnp.concatenate([blade(q)[:1], jnp.array([[0.0, 0.0, 1.0, -jnp.cos(q[3])]])]))
     assert nh.accessibility(as_form, np.zeros(4)).growth[:2] == (2, 3)
     assert not nh.accessibility(as_form, np.zeros(4)).is_accessible
@@ -474,15 +474,15 @@ def test_brackets_on_groups_are_those_of_the_algebra() -> None:
     """With a constant connection the brackets are those of the vectors (-A_i, e_i) of the algebra."""
     A = np.random.default_rng(8).normal(size=(6, 2))
     body = nh.ShapedBody(nh.SE(3), ("a", "b"), constraint_forms=lambda s: jnp.hstack([jnp.eye(6), A]) + 0 * s[0])
-    found = nh.accessibility(body, (0.3, -0.2), depth=5)
+    result = nh.accessibility(body, (0.3, -0.2), depth=5)
     fields = layer = [(-a, e) for a, e in zip(A.T, np.eye(2), strict=True)]
     ranks = []
-    while len(ranks) < len(found.growth):
+    while len(ranks) < len(result.growth):
         ranks.append(int(np.linalg.matrix_rank(np.array([np.append(*field) for field in fields]), rtol=1e-9)))
         layer = [(nh.SE(3).bracket(-a, x), np.zeros(2)) for a in A.T for x, _ in layer]
         fields = fields + layer
-    assert found.growth == tuple(ranks)
-    assert found.is_accessible
+    assert result.growth == tuple(ranks)
+    assert result.is_accessible
 
 
 @IN_SPACE

@@ -26,9 +26,9 @@ SHOT = nh.discretize(SLEIGH.system, 0.1)
 @pytest.mark.profile("long", instead="test_bounds_hold")
 def test_thousand_sleighs_are_parked() -> None:
     """From random poses and velocities to rest: at least 999 of 1000 meet pose and velocity to 1e-8, as rollouts do."""
-    found = nh.steer(SHOT, _starts(1000), {"configuration": np.eye(3), **REST}, steps=40)
-    assert found.failures <= 1
-    ends = found.orbit
+    result = nh.steer(SHOT, _starts(1000), {"configuration": np.eye(3), **REST}, steps=40)
+    assert result.failures <= 1
+    ends = result.orbit
     gap, speed = ends.configuration[:, -1] - np.eye(3), ends.restricted_momentum[:, -1]
     assert ((np.abs(gap).max(axis=(1, 2)) < 1e-8) & (np.abs(speed).max(axis=1) < 1e-8)).sum() >= 999
 
@@ -36,13 +36,13 @@ def test_thousand_sleighs_are_parked() -> None:
 @pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_many_are_parked_at_once() -> None:
     """Each of three members side by side meets its goal, in the compiled run of its controls too."""
-    starts, found = _starts(3), _parked(3)
-    assert found.failures == 0
-    assert found.controls.shape == (3, 40, 3)
-    np.testing.assert_allclose(found.orbit.configuration[:, -1], np.broadcast_to(ASIDE, (3, 3, 3)), rtol=0, atol=1e-8)
-    np.testing.assert_allclose(found.orbit.restricted_momentum[:, -1], 0.0, rtol=0, atol=1e-8)
-    np.testing.assert_allclose(found.cost, 0.05 * (found.controls**2).sum(axis=(1, 2)), rtol=1e-12)
-    driven = nh.Forced(SLEIGH.system, force=found.controls[2])
+    starts, result = _starts(3), _parked(3)
+    assert result.failures == 0
+    assert result.controls.shape == (3, 40, 3)
+    np.testing.assert_allclose(result.orbit.configuration[:, -1], np.broadcast_to(ASIDE, (3, 3, 3)), rtol=0, atol=1e-8)
+    np.testing.assert_allclose(result.orbit.restricted_momentum[:, -1], 0.0, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(result.cost, 0.05 * (result.controls**2).sum(axis=(1, 2)), rtol=1e-12)
+    driven = nh.Forced(SLEIGH.system, force=result.controls[2])
     start = {name: rows[2] for name, rows in starts.items()}
     end = nh.simulate(nh.discretize(driven, 0.1), **start, steps=40).configuration[-1]
     np.testing.assert_allclose(end, ASIDE, rtol=0, atol=1e-8)
@@ -99,9 +99,9 @@ def test_goals_are_met_in_any_unit_of_length(length: float) -> None:
     """Where thrusts cost a million times what torques do, or the inverse, a sleigh still comes to its place at rest."""
     sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, length**2, 0.2 * length), 0.1)
     place = ASIDE * [[1, 1, length], [1, 1, length], [1, 1, 1]]
-    found = nh.steer(sleigh, {}, {"configuration": place, **REST}, steps=40)
-    assert found.outcome in ("converged", "not least")
-    assert found.missed < 1e-8
+    result = nh.steer(sleigh, {}, {"configuration": place, **REST}, steps=40)
+    assert result.outcome in ("converged", "not least")
+    assert result.missed < 1e-8
 
 
 def test_ends_name_velocities_as_other_runs_do() -> None:
@@ -117,10 +117,10 @@ def test_ends_name_velocities_as_other_runs_do() -> None:
 @pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_least_effort_to_a_speed_is_a_constant_thrust() -> None:
     """A sleigh that is to slide at speed 1 after 4 units of time is pushed with 1/4 all the time, at cost 1/8."""
-    found = nh.steer(SHOT, {}, {"restricted_velocity": (0.0, 1.0)}, steps=40)
-    np.testing.assert_allclose(found.controls, np.tile([0.0, 0.25, 0.0], (40, 1)), rtol=0, atol=1e-6)
-    np.testing.assert_allclose(found.cost, 0.125, rtol=1e-9)
-    assert found.converged
+    result = nh.steer(SHOT, {}, {"restricted_velocity": (0.0, 1.0)}, steps=40)
+    np.testing.assert_allclose(result.controls, np.tile([0.0, 0.25, 0.0], (40, 1)), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(result.cost, 0.125, rtol=1e-9)
+    assert result.converged
 
 
 def test_bounds_hold() -> None:
@@ -137,10 +137,10 @@ def test_bounds_hold() -> None:
 def test_torque_alone_does_not_stop_a_sleigh(discrete: Any, method: str | None, least: float) -> None:
     """With its mass ahead, v' = a omega^2: no torque brings it to rest, and the result says so."""
     start = {"restricted_velocity": (0.0, 0.3)}
-    found = nh.steer(discrete, start, REST, steps=6, bounds=((-5.0, 0.0), (5.0, 0.0)), method=method)
-    assert not found.converged
-    assert found.missed > least  # in units of the body and the 0.6 of the motion
-    assert method is None or found.outcome == "infeasible"
+    result = nh.steer(discrete, start, REST, steps=6, bounds=((-5.0, 0.0), (5.0, 0.0)), method=method)
+    assert not result.converged
+    assert result.missed > least  # in units of the body and the 0.6 of the motion
+    assert method is None or result.outcome == "infeasible"
 
 
 def _program(discrete: Any, steps: int) -> Program:
@@ -236,8 +236,8 @@ def test_controls_do_not_depend_on_units(units: tuple[float, float, float]) -> N
         assert [each.outcome for each in steered] == ["converged", "converged"]
         return [each.controls * time**2 / mass / size for each, size in zip(steered, (1.0, length), strict=True)]
 
-    for found, expected in zip(forces(*units), forces(1.0, 1.0, 1.0), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    for result, expected in zip(forces(*units), forces(1.0, 1.0, 1.0), strict=True):
+        np.testing.assert_allclose(result, expected, rtol=0, atol=1e-12)
 
 
 def test_only_windows_of_unknowns_are_coupled() -> None:
@@ -279,23 +279,23 @@ def _around() -> Steering:
 @pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_a_disc_is_kept_clear_of() -> None:
     """Run again by the compiled map under a table, the controls meet the goal and the clearance, which is used up."""
-    found = _around()
-    assert found.outcome == "converged"
-    orbit = found.orbit
+    result = _around()
+    assert result.outcome == "converged"
+    orbit = result.orbit
     np.testing.assert_allclose(orbit.configuration[-1], ASIDE, rtol=0, atol=1e-8)
     np.testing.assert_allclose(orbit.restricted_momentum[-1], 0.0, rtol=0, atol=1e-8)
     assert -1e-8 < np.linalg.norm(orbit.position - DISC[0], axis=1).min() - DISC[1] < 1e-6
-    np.testing.assert_allclose(found.cost, 0.125 * (found.controls**2).sum(), rtol=1e-12)
+    np.testing.assert_allclose(result.cost, 0.125 * (result.controls**2).sum(), rtol=1e-12)
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_without_obstacles_both_methods_find_the_same() -> None:
     """IPOPT from the controls of shooting stays there: the same cost and the same controls."""
     shot = nh.steer(SLEIGH, {}, GOAL, steps=STEPS)
-    found = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, guess=shot)
-    assert (shot.outcome, found.outcome) == ("converged", "converged")
-    np.testing.assert_allclose(found.cost, shot.cost, rtol=1e-6)
-    np.testing.assert_allclose(found.controls, shot.controls, rtol=0, atol=1e-4 * np.abs(shot.controls).max())
+    result = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, guess=shot)
+    assert (shot.outcome, result.outcome) == ("converged", "converged")
+    np.testing.assert_allclose(result.cost, shot.cost, rtol=1e-6)
+    np.testing.assert_allclose(result.controls, shot.controls, rtol=0, atol=1e-4 * np.abs(shot.controls).max())
 
 
 @pytest.mark.parametrize(
@@ -338,9 +338,9 @@ def test_places_on_the_way_and_the_goal_of_an_outline() -> None:
     goal = {"configuration": np.eye(3), "restricted_velocity": (0.0, 0.8)}
     disc = (np.array([[0.9, 0.1]]), 0.2)
     start = {"restricted_velocity": (0.0, 0.8)}
-    found = nh.steer(SLEIGH, start, goal, steps=40, via=via, obstacles=disc, outline=rod)
-    assert found.outcome == "converged"
-    poses = found.orbit.configuration
+    result = nh.steer(SLEIGH, start, goal, steps=40, via=via, obstacles=disc, outline=rod)
+    assert result.outcome == "converged"
+    poses = result.orbit.configuration
     for step, place in via.items():
         np.testing.assert_allclose(poses[step, :2, 2], place, rtol=0, atol=1e-8)
     ends = poses[:, None, :2, 2] + np.einsum("kij,pj->kpi", poses[:, :2, :2], rod)
@@ -362,9 +362,9 @@ def test_a_trailer_keeps_clear_of_a_disc() -> None:
     goal, disc = {"configuration": {"x": 1.6, "y": 1.6, "theta": np.pi / 2}}, ([(1.0, 0.6)], 0.35)
     nearest = []
     for outline in (np.zeros((1, 2)), trailer_axle):
-        found = nh.steer(discrete, start, goal, steps=30, obstacles=disc, outline=outline)
-        assert found.outcome == "converged"
-        q = found.orbit.configuration
+        result = nh.steer(discrete, start, goal, steps=30, obstacles=disc, outline=outline)
+        assert result.outcome == "converged"
+        q = result.orbit.configuration
         axles = q[:, :2], q[:, :2] - 0.6 * np.stack([np.cos(q[:, 3]), np.sin(q[:, 3])], axis=1)
         nearest.append([np.linalg.norm(axle - disc[0][0], axis=1).min() - disc[1] for axle in axles])
     (tractor, cut), (both, clear) = nearest
@@ -384,9 +384,9 @@ def test_bodies_meet_goals(name: str) -> None:
         "forced": (FORCED, ASIDE),
     }[name]
     goal = {"configuration": turn, "restricted_velocity": np.zeros(system.rank)}
-    found = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40, method="ipopt")
-    assert found.outcome == "converged"
-    np.testing.assert_allclose(found.orbit.configuration[-1], turn, rtol=0, atol=1e-8)
+    result = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40, method="ipopt")
+    assert result.outcome == "converged"
+    np.testing.assert_allclose(result.orbit.configuration[-1], turn, rtol=0, atol=1e-8)
     shot = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40)
     guided = nh.steer(nh.discretize(system, 0.1), {}, goal, steps=40, guess=shot)
     np.testing.assert_allclose(guided.cost, shot.cost, rtol=1e-6)
@@ -399,10 +399,10 @@ def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
     motors, start = np.array([0.0, 0.0, 0.0, 2.0, 2.0]), {"configuration": np.zeros(5)}
     goal = {"configuration": {"x": 1.0, "y": 0.3, "theta": 0.0}, "body_velocity": np.zeros(5)}
     disc = (np.array([[0.5, 0.1]]), 0.05)
-    found = nh.steer(nh.discretize(board, 0.1), start, goal, steps=80, bounds=(-motors, motors), obstacles=disc)
-    assert found.outcome == "converged"
-    assert not found.controls[:, :3].any()
-    orbit = found.orbit
+    result = nh.steer(nh.discretize(board, 0.1), start, goal, steps=80, bounds=(-motors, motors), obstacles=disc)
+    assert result.outcome == "converged"
+    assert not result.controls[:, :3].any()
+    orbit = result.orbit
     np.testing.assert_allclose(orbit.configuration[-1, :3], [1.0, 0.3, 0.0], rtol=0, atol=1e-8)
     v = (orbit.configuration[-1] - orbit.configuration[-2]) / 0.1
     assert np.abs(orbit.body_velocity[-1]).max() < 1e-8 < np.abs(v).max()  # the step after the last rests
@@ -417,8 +417,8 @@ def test_bounds_of_states_are_linear_in_their_numbers() -> None:
     nowhere, names = {"start": np.full((1, 11), np.nan)}, body_numbers(system, 2.0)
     length = system.displacement_units[1]
 
-    def outside(**given: Any) -> np.ndarray:
-        bounds: Any = StateBounds.of(given, names, nowhere)
+    def outside(**arguments: Any) -> np.ndarray:
+        bounds: Any = StateBounds.of(arguments, names, nowhere)
         return np.array([bounds.outside(each) for each in numbers])
 
     np.testing.assert_allclose(outside(y=(-0.3, 0.2)) * length, _beyond(g[:, 1, 2], -0.3, 0.2), atol=1e-15)
@@ -438,22 +438,24 @@ def _beyond(values: np.ndarray, low: float, high: float) -> np.ndarray:
 
 
 @pytest.mark.profile("routes", instead="test_bounds_of_states_are_linear_in_their_numbers")
-@pytest.mark.parametrize("given", [{"theta": (-0.5, 0.6)}, {"restricted_velocity": (-0.9, (1.0, 0.7)), "x": (-0.2, 2)}])
-def test_bounds_of_states_are_kept_and_used_up(given: dict) -> None:
+@pytest.mark.parametrize(
+    "values", [{"theta": (-0.5, 0.6)}, {"restricted_velocity": (-0.9, (1.0, 0.7)), "x": (-0.2, 2)}]
+)
+def test_bounds_of_states_are_kept_and_used_up(values: dict) -> None:
     """Run again by the compiled map, states of a parking stay within bounds that it broke without, and touch them."""
 
-    def rooms(found: Steering) -> list[float]:
-        orbit = found.orbit
+    def rooms(result: Steering) -> list[float]:
+        orbit = result.orbit
         velocity = SLEIGH.system.restricted_velocity(orbit.restricted_momentum)
         states = {"theta": orbit.heading, "x": orbit.position[:, 0], "restricted_velocity": velocity}
-        return [min((states[name] - low).min(), (high - states[name]).min()) for name, (low, high) in given.items()]
+        return [min((states[name] - low).min(), (high - states[name]).min()) for name, (low, high) in values.items()]
 
     free = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, method="ipopt")
-    found = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, state_bounds=given)
-    assert found.outcome == "converged"
-    assert found.cost > free.cost
+    result = nh.steer(SLEIGH, {}, GOAL, steps=STEPS, state_bounds=values)
+    assert result.outcome == "converged"
+    assert result.cost > free.cost
     assert all(room < -0.01 for room in rooms(free))
-    assert all(-1e-8 < room < 1e-5 for room in rooms(found))
+    assert all(-1e-8 < room < 1e-5 for room in rooms(result))
 
 
 @pytest.mark.profile("long", instead="test_bounds_hold")
@@ -464,9 +466,9 @@ def test_wheels_are_kept_from_turning_over() -> None:
     arguments = {"start": {"configuration": np.zeros(5)}, "goal": goal, "steps": 80, "bounds": (-motors, motors)}
     discrete, limit = nh.discretize(board, 0.1), {"phi": (-1.2, 1.2)}
     assert not nh.steer(discrete, **arguments).converged
-    found = nh.steer(discrete, **arguments, state_bounds=limit)
-    assert found.outcome == "converged"
-    orbit = found.orbit
+    result = nh.steer(discrete, **arguments, state_bounds=limit)
+    assert result.outcome == "converged"
+    orbit = result.orbit
     np.testing.assert_allclose(orbit.configuration[-1, [0, 1, 2, 4]], [1.0, 1.0, 0.0, 0.0], rtol=0, atol=1e-8)
     assert -1e-8 < 1.2 - np.abs(orbit.configuration[:, 4]).max() < 1e-5
     slow = nh.steer(discrete, **arguments, state_bounds={**limit, "body_velocity": (-0.1, 0.1)})
@@ -498,9 +500,9 @@ def test_a_ball_rolls_aside_and_rests_as_it_was() -> None:
     discrete, aside = nh.discretize(nh.examples.chaplygin_ball().system, 0.2), np.eye(4)
     aside[:2, 3] = 0.5, 0.3
     goal, bounds = {"configuration": aside, "body_velocity": np.zeros(6)}, {"y": (-0.05, np.inf)}
-    found = nh.steer(discrete, {}, goal, steps=12, obstacles=([(0.25, 0.1, 0.0)], 0.1), state_bounds=bounds)
-    assert found.outcome == "converged"
-    orbit = nh.rollout(discrete, body_velocity=np.zeros(6), controls=found.controls, steps=12)
+    result = nh.steer(discrete, {}, goal, steps=12, obstacles=([(0.25, 0.1, 0.0)], 0.1), state_bounds=bounds)
+    assert result.outcome == "converged"
+    orbit = nh.rollout(discrete, body_velocity=np.zeros(6), controls=result.controls, steps=12)
     np.testing.assert_allclose(orbit.configuration[-1], aside, rtol=0, atol=1e-8)
     place = orbit.configuration[:, :3, 3]
     assert np.linalg.norm(place - [0.25, 0.1, 0.0], axis=1).min() > 0.1 - 1e-8

@@ -149,8 +149,8 @@ def test_exponents_in_coordinates_are_those_of_the_linear_equations() -> None:
     rest: dict[str, Any] = {"configuration": [np.pi], "body_velocity": [0.0]}
     discrete = nh.discretize(pendulum, 0.1)
     multipliers = nh.linearize(discrete, configuration=[np.pi]).eigenvalues
-    found = nh.lyapunov_exponents(nh.simulate(discrete, steps=60, **rest))
-    np.testing.assert_allclose(found, np.log(multipliers) / 0.1, rtol=0, atol=np.log(2) / 6)  # the first frame
+    result = nh.lyapunov_exponents(nh.simulate(discrete, steps=60, **rest))
+    np.testing.assert_allclose(result, np.log(multipliers) / 0.1, rtol=0, atol=np.log(2) / 6)  # the first frame
     flow = nh.flow(pendulum, times=np.linspace(0.0, 20.0, 81), **rest)
     np.testing.assert_allclose(nh.lyapunov_exponents(flow), [1.0, -1.0], rtol=0, atol=0.05)
     values = np.linalg.eigvals(flow.tangent[0])
@@ -164,13 +164,13 @@ def test_tangent_maps_by_functions_on_a_group() -> None:
     top = nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), J), None)
     body = nh.discretize(nh.RigidBody(J), h)
     start: dict[str, Any] = {"body_velocity": (0.3, 0.4, 0.2)}
-    orbit, known = nh.simulate(nh.discretize(top, h), steps=1, **start), nh.simulate(body, steps=1, **start)
+    orbit, reference = nh.simulate(nh.discretize(top, h), steps=1, **start), nh.simulate(body, steps=1, **start)
 
     def momentum(v: np.ndarray) -> np.ndarray:
         return nh.discrete_legendre(body, nh.SO(3).exp(h * v))
 
     before, after = (derivatives(momentum, v) for v in orbit.body_velocity)
-    wanted = np.linalg.solve(after, known.tangent[0] @ before)
+    wanted = np.linalg.solve(after, reference.tangent[0] @ before)
     np.testing.assert_allclose(orbit.tangent[0][3:], np.hstack([np.zeros((3, 3)), wanted]), rtol=0, atol=1e-11)
     np.testing.assert_allclose(orbit.tangent[0][:3, :3], orbit.displacement[0].T, rtol=0, atol=1e-14)
 

@@ -65,11 +65,11 @@ USES = {"flow": _flow, "simulate": _run, "vector_field": _rate, "by itself": _wo
 @pytest.mark.parametrize("function", [velocity_set, pose_set, damped, pose_cut])
 def test_functions_that_write_to_what_they_get_are_named(function: Callable[..., Any], use: str) -> None:
     """They get copies that cannot be written: a motion is never changed by them, and the error says which one it is."""
-    given = (function, None) if function is pose_cut else (None, function)
+    arguments = (function, None) if function is pose_cut else (None, function)
     where = "potential" if function is pose_cut else "force"
     named = rf"`Forced\({where}=...\)` must not write to its arguments. Got `{function.__name__}`"
     with pytest.raises(ValueError, match=named):
-        USES[use](*given)
+        USES[use](*arguments)
 
 
 def test_compiled_functions_that_write_are_found_before_a_run() -> None:
@@ -88,7 +88,7 @@ def _well(g: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize(
-    ("use", "potential", "force", "told", "states"),
+    ("use", "potential", "force", "message", "states"),
     [
         (_run, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.3", 3),
         (_flow, None, _late, r"\[nan, 0.0, 0.0\] from `_late` at time 0.2", 1),
@@ -97,10 +97,10 @@ def _well(g: np.ndarray) -> float:
     ids=["force in a run", "force in a flow", "potential in a run"],
 )
 def test_what_is_not_finite_is_named_with_its_time(
-    use: Any, potential: Any, force: Any, told: str, states: int
+    use: Any, potential: Any, force: Any, message: str, states: int
 ) -> None:
     """A run ends at the first node after, a flow as near as its steps are short; the states before are kept."""
-    with pytest.raises(nh.OutcomeError, match=told) as ended:
+    with pytest.raises(nh.OutcomeError, match=message) as ended:
         use(potential, force)
     assert ended.value.outcome == nh.Outcome.nonfinite
     assert len(ended.value.orbit) == states
@@ -124,9 +124,9 @@ def test_forces_that_are_no_real_numbers_are_refused(kind: str) -> None:
     def push(*_: Any) -> Any:
         return NOT_NUMBERS[kind]
 
-    told = r"(?s)`Forced\(force=...\)` must return 3 real numbers. Got .* from `push`"
+    report = r"(?s)`Forced\(force=...\)` must return 3 real numbers. Got .* from `push`"
     for use in (_run, _flow):
-        with pytest.raises(TypeError, match=told):
+        with pytest.raises(TypeError, match=report):
             use(None, push)
 
 

@@ -33,16 +33,16 @@ def test_what_is_traced_is_not_kept() -> None:
     """A value of one trace must not reach another."""
     import jax
 
-    seen = []
+    records = []
 
     def energy(a: jax.Array) -> jax.Array:
         system = nh.ChaplyginSleigh(1.0, 2.0, a)
         value = system.inertia_operator.sum()
-        seen.append(vars(system))
+        records.append(vars(system))
         return value
 
     assert jax.grad(energy)(0.5) == 3.0
-    assert all(set(kept) == {"mass", "inertia", "a", "b"} for kept in seen)
+    assert all(set(rows) == {"mass", "inertia", "a", "b"} for rows in records)
 
 
 READINGS = [
@@ -100,9 +100,9 @@ RESULTS = {
 @pytest.mark.parametrize("line", RESULTS)
 def test_a_result_is_printed_as_a_short_table(line: str) -> None:
     """Its name, and a line for each value."""
-    found = RESULTS[line]()
-    lines = repr(found).splitlines()
-    assert lines[0] == type(found).__name__
+    result = RESULTS[line]()
+    lines = repr(result).splitlines()
+    assert lines[0] == type(result).__name__
     assert any(each.strip().startswith(line) for each in lines)
     assert len(lines) < 25
     assert all(len(each) <= 140 for each in lines)

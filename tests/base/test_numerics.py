@@ -34,9 +34,9 @@ def test_integrated_exponential(size: float) -> None:
 def test_exponentials_of_one_stack_do_not_disturb_each_other() -> None:
     """A matrix of norm 30 makes all be halved together; the small one keeps its relative accuracy."""
     small = 1e-10 * np.array([[0.0, 1.0], [2.0, 0.5]])
-    found = _functions.exponential_increment(np.stack([small, 30 * np.eye(2)]))
-    assert np.abs(found[0] - (small + small @ small / 2)).max() < 1e-24
-    assert np.abs(found[1] / np.expm1(30.0) - np.eye(2)).max() < 1e-14
+    result = _functions.exponential_increment(np.stack([small, 30 * np.eye(2)]))
+    assert np.abs(result[0] - (small + small @ small / 2)).max() < 1e-24
+    assert np.abs(result[1] / np.expm1(30.0) - np.eye(2)).max() < 1e-14
 
 
 @pytest.mark.parametrize("halvings", [1, 2, 3])
@@ -105,8 +105,8 @@ def test_rows_have_the_bits_of_the_formula(shape: tuple[int, ...], count: int) -
     wide = np.repeat(x, 2, axis=-1)[..., ::2]
     before = x.copy()
     for one in (x, wide, np.asfortranarray(x)):
-        found = of_length_one(one, count)
-        assert np.array_equal(found.view(np.int64), _formula(x, count).view(np.int64))
+        result = of_length_one(one, count)
+        assert np.array_equal(result.view(np.int64), _formula(x, count).view(np.int64))
     assert np.array_equal(x, before)
     assert not np.shares_memory(of_length_one(x, count), x)
 
@@ -156,10 +156,10 @@ def test_hard_cubics(kind: str) -> None:
     rng, eps = np.random.default_rng(1), 2.0**-52
     for _ in range(200):
         coefficients = tuple(map(float, _drawn(kind, rng)))
-        count, *found = real_cubic_roots(*coefficients)
+        count, *result = real_cubic_roots(*coefficients)
         with mpmath.workdps(60):
             a, b, c, d = map(mpmath.mpf, coefficients)
-            roots = list(map(mpmath.mpf, found))
+            roots = list(map(mpmath.mpf, result))
             sizes = [mpmath.fsum(map(abs, (a * t**3, b * t**2, c * t, d))) for t in roots]
 
             def value(t: mpmath.mpf) -> mpmath.mpf:
@@ -170,7 +170,7 @@ def test_hard_cubics(kind: str) -> None:
             discriminant = mpmath.fsum(terms)
             if abs(discriminant) <= 100 * eps * mpmath.fsum(map(abs, terms)):
                 continue  # roots that rounding of the coefficients makes double or complex
-            assert count == len(set(found)) == (3 if discriminant > 0 else 1), coefficients
+            assert count == len(set(result)) == (3 if discriminant > 0 else 1), coefficients
             for t, size in zip(roots, sizes, strict=True):
                 bound = 4 * eps * size / abs(3 * a * t**2 + 2 * b * t + c)
                 assert mpmath.sign(value(t - bound)) * mpmath.sign(value(t + bound)) <= 0, coefficients

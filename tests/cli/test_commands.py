@@ -21,15 +21,15 @@ from nonholo.simulation import _run
 
 def test_json_is_all_that_is_printed(figures: Figures) -> None:
     """`--json` prints one object with the figures of the run and the path of its store."""
-    told = figures("suslov")
-    assert told["steps"] == 800
-    assert told["outcome"] == "successful"
+    report = figures("suslov")
+    assert report["steps"] == 800
+    assert report["outcome"] == "successful"
     for name in ("energy_drift", "constraint_residual", "group_residual", "reversal_defect"):
-        assert 0 <= told[name] < 1e-14, name
-    assert told["seconds_per_step"] > 0
-    assert told["body"]["inertia_tensor"][2] == [-0.5, 0.3, 2.4]
-    assert told["picture"] is None
-    assert len(nh.load_orbit(told["store"])) == 801
+        assert 0 <= report[name] < 1e-14, name
+    assert report["seconds_per_step"] > 0
+    assert report["body"]["inertia_tensor"][2] == [-0.5, 0.3, 2.4]
+    assert report["picture"] is None
+    assert len(nh.load_orbit(report["store"])) == 801
 
 
 @pytest.mark.parametrize("name", ["suslov", "sleigh"])
@@ -57,9 +57,9 @@ def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, m
     loaded = load_scenario("sleigh", [])
     runs._check_output(None, overwrite=False, new=None)
     with ThreadPoolExecutor(4) as pool:
-        kept = list(pool.map(lambda _: runs.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
-    assert len({store for store, _ in kept}) == 8
-    assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in kept)
+        ends = list(pool.map(lambda _: runs.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
+    assert len({store for store, _ in ends}) == 8
+    assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in ends)
     assert len(list((tmp_path / "runs").iterdir())) == 8
 
 
@@ -82,9 +82,9 @@ def test_a_run_that_stops_keeps_its_good_steps(nonholo: Command) -> None:
     assert_ends(nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3), 1, "Step 5 of 300", "no_real_branch")
     orbit = nh.load_orbit("runs/sleigh-001.zarr")
     assert (len(orbit), orbit.outcome) == (5, nh.Outcome.no_real_branch)
-    told = json.loads(nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3, "--json").stdout)
-    assert told["steps"] == 4
-    assert "Step 5 of 300" in told["stopped"]
+    report = json.loads(nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3, "--json").stdout)
+    assert report["steps"] == 4
+    assert "Step 5 of 300" in report["stopped"]
 
 
 def test_a_body_that_cannot_be_is_told_once(nonholo: Command) -> None:
@@ -101,7 +101,7 @@ def test_a_start_off_the_locus(nonholo: Command) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (["--set", "start.body_velocity=[0,1,1]"], "start.body_velocity: must satisfy the constraint"),
         (["--set", "start.body_velocity=[0,1]"], "start.body_velocity: must have shape (3,)"),
@@ -113,10 +113,10 @@ def test_a_start_off_the_locus(nonholo: Command) -> None:
         (["-o", "mine.txt/a.zarr"], "The results cannot be kept in 'mine.txt', no writable folder."),
     ],
 )
-def test_usage_errors(arguments: list[Any], told: str, nonholo: Command) -> None:
+def test_usage_errors(arguments: list[Any], message: str, nonholo: Command) -> None:
     """Wrong input ends with exit code 2, a sentence with the key path, and nothing made."""
     Path("mine.txt").touch()
-    assert_ends(nonholo("simulate", "sleigh", *arguments), 2, told)
+    assert_ends(nonholo("simulate", "sleigh", *arguments), 2, message)
     assert not list(Path("runs").iterdir()) if Path("runs").exists() else True
 
 
@@ -158,11 +158,11 @@ def test_info_and_plot_of_a_flow(nonholo: Command) -> None:
 def test_info(nonholo: Command) -> None:
     """`info` shows how a store was made and measures its invariants again, as a table and as JSON."""
     nonholo("simulate", "suslov", "--no-plot", "-o", "a.zarr", "--steps", 50)
-    told = json_of(nonholo("info", "a.zarr", "--json"))
-    assert told["provenance"]["motion"]["time_step"] == 0.1
-    assert told["provenance"]["versions"]["numpy"] == np.__version__
-    assert told["steps"] == 50
-    assert_shows(nonholo("info", "a.zarr"), "difference matrix", f"kernels {told['provenance']['kernels']}")
+    report = json_of(nonholo("info", "a.zarr", "--json"))
+    assert report["provenance"]["motion"]["time_step"] == 0.1
+    assert report["provenance"]["versions"]["numpy"] == np.__version__
+    assert report["steps"] == 50
+    assert_shows(nonholo("info", "a.zarr"), "difference matrix", f"kernels {report['provenance']['kernels']}")
 
 
 def test_a_store_can_be_run_again(nonholo: Command, figures: Figures) -> None:
@@ -236,7 +236,7 @@ SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 
 
 @pytest.mark.parametrize(
-    ("kind", "told"),
+    ("kind", "message"),
     [
         ("top", "there is no kind 'top'. Did you mean suslov or veselova?"),
         ("slei", "Did you mean sleigh?"),
@@ -244,9 +244,9 @@ SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
         ("zebra", "Known: suslov, sleigh, multidimensional_sleigh,"),
     ],
 )
-def test_unknown_templates_name_the_nearest(kind: str, told: str, nonholo: Command) -> None:
+def test_unknown_templates_name_the_nearest(kind: str, message: str, nonholo: Command) -> None:
     """A kind that is none is refused in our own words, with the nearest ones."""
-    assert "Value error" not in words_of(assert_ends(nonholo("new", kind), 2, told))
+    assert "Value error" not in words_of(assert_ends(nonholo("new", kind), 2, message))
 
 
 @pytest.mark.profile("faults", keep=["png"])

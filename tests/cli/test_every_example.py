@@ -38,8 +38,8 @@ def test_they_are_the_public_ones() -> None:
 def test_every_example(name: str, nonholo: Command) -> None:
     """It runs as in Python, from its own start; its store is shown and drawn; its page and a sweep of two are made."""
     orbit = getattr(nh.examples, name)().simulate(steps=6)
-    told = json_of(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json"))
-    assert told["outcome"] == "successful"
+    report = json_of(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json"))
+    assert report["outcome"] == "successful"
     np.testing.assert_array_equal(nh.load_orbit("a.zarr").configuration, orbit.configuration)
     assert Path("a.png").stat().st_size > 5_000
     assert "successful" in output_of(nonholo("info", "a.zarr"))
@@ -145,8 +145,8 @@ def test_a_body_of_ones_own(robot: Path, nonholo: Command, monkeypatch: pytest.M
     ]
     Path("cart.toml").write_text(output_of(nonholo("new", "cart", *own)))
     assert "mass = 1.0  # m, of the cart." in Path("cart.toml").read_text()
-    told = json_of(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0"))
-    assert (told["steps"], told["outcome"]) == (8, "successful")
+    report = json_of(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0"))
+    assert (report["steps"], report["outcome"]) == (8, "successful")
     orbit = nh.load_orbit("c.zarr")
     system = sys.modules["cart_of_mine"].cart(mass=2.0).system
     again = nh.simulate(nh.discretize(system, 0.1), configuration=[0.3, 0.0], body_velocity=[0.5, 0.0], steps=8)
@@ -172,7 +172,7 @@ def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("simulate", "cart"), "there is no such file, and no built-in scenario of this name"),
         (("simulate", "LLSystem"), "`nonholo new LLSystem` writes one."),
@@ -189,18 +189,18 @@ def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     ],
 )
 @pytest.mark.usefixtures("robot")
-def test_refusals(arguments: tuple[str, ...], told: str, nonholo: Command) -> None:
+def test_refusals(arguments: tuple[str, ...], message: str, nonholo: Command) -> None:
     """A file is never imported unasked; what is wrong with one, or with the numbers of an example, is said."""
     Path("json.py").write_text("")
     Path("broken.py").write_text("def cart(:")
     Path("leaving.py").write_text("raise SystemExit(3)")
-    assert_ends(nonholo(*arguments), 2, told)
+    assert_ends(nonholo(*arguments), 2, message)
 
 
 def test_every_data_set_is_listed(nonholo: Command) -> None:
     """The list has each name and what moves."""
-    shown = nonholo("dataset", "--list").stdout
-    assert all(name in shown for name in DEFINITIONS)
+    text = nonholo("dataset", "--list").stdout
+    assert all(name in text for name in DEFINITIONS)
 
 
 def _written(nonholo: Command, *arguments: str) -> dict[str, Any]:

@@ -54,7 +54,7 @@ GRAVITY, FRICTION = nh.Gravity([0.1, -1.0], [0.5, 0.1]), nh.Friction([[0.2, 0.1,
 
 
 @pytest.mark.parametrize(
-    ("kept", "expected"),
+    ("rows", "expected"),
     [
         ((), None),
         (("gravity",), {"potential": GRAVITY}),
@@ -64,10 +64,10 @@ GRAVITY, FRICTION = nh.Gravity([0.1, -1.0], [0.5, 0.1]), nh.Friction([[0.2, 0.1,
     ],
     ids=["none", "gravity", "friction", "table", "all"],
 )
-def test_the_motion_is_that_of_python(file: Path, kept: tuple[str, ...], expected: Any) -> None:
+def test_the_motion_is_that_of_python(file: Path, rows: tuple[str, ...], expected: Any) -> None:
     """A body under forces of a file moves as `Forced`, to the last bit; without any it is the body itself."""
     lines = FORCES.splitlines(keepends=True)
-    file.write_text(SLEIGH + "".join(line for line in lines if line[0] in "[\n" or line.split(" ")[0] in kept))
+    file.write_text(SLEIGH + "".join(line for line in lines if line[0] in "[\n" or line.split(" ")[0] in rows))
     scenario = load_scenario(str(file), []).scenario
     system = _forced(**expected) if expected else nh.ChaplyginSleigh(2.0, 0.7, 0.4)
     assert scenario.system().is_forced == bool(expected)
@@ -79,9 +79,9 @@ def test_the_motion_is_that_of_python(file: Path, kept: tuple[str, ...], expecte
 def test_a_blade_of_a_scenario_yields(file: Path) -> None:
     """`forces.slip` is `nh.Slip`, also beside other forces; a store of it has the bits of Python."""
     settings = ["slip={rows=[[0, 0, 1]], grip=0.1, viscous=0.2}", "gravity={force=[0.1, -1], point=[0.5, 0.1]}"]
-    given = [parse_setting("forces={}"), *(parse_setting(f"forces.{each}") for each in settings)]
-    given.append(parse_setting("start={body_velocity=[0.3, 0.4, 0.0]}"))
-    scenario = load_scenario(str(file), given).scenario
+    arguments = [parse_setting("forces={}"), *(parse_setting(f"forces.{each}") for each in settings)]
+    arguments.append(parse_setting("start={body_velocity=[0.3, 0.4, 0.0]}"))
+    scenario = load_scenario(str(file), arguments).scenario
     orbit = nh.simulate(scenario.discretization(), steps=9, **scenario.options())
     forced = _forced(potential=GRAVITY, force=nh.Slip([[0.0, 0.0, 1.0]], 0.1, 0.2))
     other = nh.simulate(nh.discretize(forced, 0.05), body_velocity=(0.3, 0.4, 0.0), steps=9)
@@ -95,8 +95,8 @@ def test_the_text_kept_repeats_the_run(file: Path, nonholo: Command) -> None:
     text = effective_text(scenario)
     assert tomllib.loads(text)["forces"]["table"] == TABLE
     assert scenario_of(load_scenario, text) == scenario
-    for name, kept in ((file, "a.zarr"), ("my.toml", "b.zarr")):
-        assert nonholo("simulate", name, "-o", kept, "--no-plot", "-q").exit_code == 0
+    for name, rows in ((file, "a.zarr"), ("my.toml", "b.zarr")):
+        assert nonholo("simulate", name, "-o", rows, "--no-plot", "-q").exit_code == 0
     assert_same(nh.load_orbit("a.zarr"), nh.load_orbit("b.zarr"), "momentum")
     assert nonholo("info", "a.zarr").exit_code == 0
     assert nonholo("explore", file, "-o", "page.html", "--no-browser").exit_code == 0
@@ -144,8 +144,8 @@ def test_refusals(file: Path, setting: str, text: str) -> None:
     """What cannot act on the body is refused with its key and what to do, before anything runs."""
     with pytest.raises(ScenarioError) as caught:
         load_scenario(str(file), [parse_setting(setting)])
-    (found,) = {str(problem) for problem in caught.value.problems if text in str(problem)}
-    assert "a function" not in found  # no scenario holds one
+    (result,) = {str(problem) for problem in caught.value.problems if text in str(problem)}
+    assert "a function" not in result  # no scenario holds one
 
 
 @pytest.mark.parametrize(
@@ -208,9 +208,9 @@ def test_steps_that_take_no_forces(file: Path, nonholo: Command) -> None:
 def test_thinned_run_under_a_table(file: Path, nonholo: Command) -> None:
     """What needs every step is left out of the table, the picture and the page, and the rest is there."""
     result = assert_ends(nonholo("simulate", file, "--set", "run.save_every=3", "-o", "a.zarr", "--json"), 0)
-    told = json.loads(result.stdout)
-    assert (told["work"], told["energy_drift"], told["outcome"]) == (None, None, "successful")
-    assert told["constraint_residual"] < 1e-14
+    report = json.loads(result.stdout)
+    assert (report["work"], report["energy_drift"], report["outcome"]) == (None, None, "successful")
+    assert report["constraint_residual"] < 1e-14
     assert "no picture" not in result.stderr
     assert nonholo("info", "a.zarr").exit_code == 0
     assert nonholo("explore", "a.zarr", "-o", "page.html", "--no-browser").exit_code == 0
@@ -239,15 +239,15 @@ def test_sweep_over_numbers_of_forces(file: Path, nonholo: Command) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "told"),
+    ("value", "message"),
     [
         ('"forces.gravity.wight" = [1]', "cannot be varied. Did you mean gravity_point?"),
         ('"forces.friction_7" = [1.0]', "must vary existing components. Got friction_7 of 3"),
         ('"forces.slip.grip" = [1.0]', "cannot be varied. Known: gravity_force, gravity_point, friction."),
     ],
 )
-def test_numbers_that_no_force_has(value: str, told: str, file: Path, nonholo: Command) -> None:
+def test_numbers_that_no_force_has(value: str, message: str, file: Path, nonholo: Command) -> None:
     """A sweep over what no force of the scenario has is refused with what there is."""
     forces = FORCES.replace("[[0.2, 0.1, 0], [-0.1, 0.3, 0], [0, 0, 0.1]]", "[1, 2, 3]")
     file.write_text(SLEIGH + forces + DESIGN + value)
-    assert told in assert_ends(nonholo("sweep", file, "--no-plot"), 2).output
+    assert message in assert_ends(nonholo("sweep", file, "--no-plot"), 2).output

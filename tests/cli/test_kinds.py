@@ -49,15 +49,15 @@ def test_kinds_are_the_same_everywhere() -> None:
 @pytest.mark.parametrize("kind", SHORT)
 def test_built_in_scenario(kind: str, figures: Figures, nonholo: Command) -> None:
     """Each runs to its end, conserves what it says, and its store is shown and drawn again."""
-    told = figures(kind, "-o", "a.zarr")
-    assert told["outcome"] == "successful"
-    assert told["energy_is_exact"] == (kind in EXACT)
-    assert (told["energy_drift"] < 1e-13) == (kind in EXACT)  # the others oscillate by 1e-5 and more
+    report = figures(kind, "-o", "a.zarr")
+    assert report["outcome"] == "successful"
+    assert report["energy_is_exact"] == (kind in EXACT)
+    assert (report["energy_drift"] < 1e-13) == (kind in EXACT)  # the others oscillate by 1e-5 and more
     for name in ("constraint_residual", "group_residual", "reversal_defect"):
-        assert told[name] < 1e-13, name
+        assert report[name] < 1e-13, name
     again = json_of(nonholo("info", "a.zarr", "--json"))
-    assert again["energy_drift"] == told["energy_drift"]
-    assert again["body"] == told["body"]
+    assert again["energy_drift"] == report["energy_drift"]
+    assert again["body"] == report["body"]
     assert nonholo("plot", "a.zarr").stderr == ""
     assert Path("a.png").stat().st_size > 10_000
 
@@ -111,8 +111,8 @@ def test_table_says_what_to_expect_of_the_energy(nonholo: Command) -> None:
     """The row of the energy drift says whether a theorem makes it exact, for runs and for stores."""
     assert_shows(nonholo("simulate", "suslov", "--no-plot", "--steps", 20), "exact by theorem")
     other = nonholo("simulate", "veselova", "--no-plot", "--steps", 20)
-    for shown in (other, nonholo("info", "runs/veselova-001.zarr")):
-        assert_shows(shown, "not exact for this discretization")
+    for text in (other, nonholo("info", "runs/veselova-001.zarr")):
+        assert_shows(text, "not exact for this discretization")
 
 
 def test_group_and_large_matrices_in_the_table(nonholo: Command) -> None:
@@ -158,7 +158,7 @@ def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> N
 
 
 @pytest.mark.parametrize(
-    ("group", "told"),
+    ("group", "message"),
     [
         ('"SO(1)"', "body.group: must be a name such as"),
         ('"GL(2)"', "Got 'GL(2)'"),
@@ -168,10 +168,10 @@ def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> N
         ("{basis = [[[0,1],[0,0]], [[0,0],[1,0]]]}", "body.group.basis: must span a Lie algebra"),
     ],
 )
-def test_groups_that_are_none(group: str, told: str) -> None:
+def test_groups_that_are_none(group: str, message: str) -> None:
     """A group that cannot be read is reported with its key path and what a group looks like."""
-    found = _problems(OWN.replace(HEISENBERG, group))
-    assert any(told in problem for problem in found), found
+    result = _problems(OWN.replace(HEISENBERG, group))
+    assert any(message in problem for problem in result), result
 
 
 def test_one_energy_and_one_constraint() -> None:
@@ -183,7 +183,7 @@ def test_one_energy_and_one_constraint() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "setting", "told"),
+    ("kind", "setting", "message"),
     [
         ("rigid_body", "body.mass_tensor=[[1,0],[0,1]]", "body.mass_tensor: must"),
         ("veselova", "body.mass_tensor=[[1,0,0],[0,0,0],[0,0,0]]", "body.mass_tensor: must make the inertia operator"),
@@ -194,9 +194,9 @@ def test_one_energy_and_one_constraint() -> None:
         ("suslov", "body.mass_tensor=[[1,0,0.5],[0,1,0],[0,0,1]]", "must be symmetric. Got entries 0.5 and 0.0"),
     ],
 )
-def test_physical_refusals_have_key_paths(kind: str, setting: str, told: str) -> None:
+def test_physical_refusals_have_key_paths(kind: str, setting: str, message: str) -> None:
     """What the library refuses about a body is reported with the option and the key that it came from."""
-    found = _problems(built_in()[kind], setting)
-    assert len(found) == 1
-    assert found[0].startswith(f"--set {setting}: body")
-    assert told in found[0]
+    result = _problems(built_in()[kind], setting)
+    assert len(result) == 1
+    assert result[0].startswith(f"--set {setting}: body")
+    assert message in result[0]

@@ -14,9 +14,9 @@ from nonholo_paper import Entry, _registry, _run, sections
 
 @pytest.fixture(autouse=True)
 def _two_findings(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = (Entry(minus, sections()[3]), Entry(raises, sections()[3]))
+    result = (Entry(minus, sections()[3]), Entry(raises, sections()[3]))
     for module in (nonholo_paper, _registry):
-        monkeypatch.setattr(module, "entries", lambda: found)
+        monkeypatch.setattr(module, "entries", lambda: result)
 
 
 def labels(folder: str) -> list[str]:

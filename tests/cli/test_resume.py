@@ -35,14 +35,14 @@ def stopped() -> Path:
 def test_info_says_how_far_a_run_came(stopped: Path, nonholo: Command) -> None:
     """`info` of an unfinished run says how far it came and how to resume, as a table and as JSON."""
     assert_shows(nonholo("info", stopped), "199 of 500, 39.8 %", "nonholo resume run.zarr")
-    told = json_of(nonholo("info", stopped, "--json"))
-    assert told["unfinished"] == {"done": 199, "steps": 500, "owner": None}
+    report = json_of(nonholo("info", stopped, "--json"))
+    assert report["unfinished"] == {"done": 199, "steps": 500, "owner": None}
 
 
 def test_resume_finishes_a_run(stopped: Path, nonholo: Command) -> None:
     """`resume` ends with the undisturbed run and its invariants."""
-    told = json_of(nonholo("resume", stopped, "--json"))
-    assert (told["steps"], told["outcome"]) == (500, "successful")
+    report = json_of(nonholo("resume", stopped, "--json"))
+    assert (report["steps"], report["outcome"]) == (500, "successful")
     assert np.array_equal(nh.load_orbit(stopped).pose, nh.simulate(SLEIGH, steps=500, **START).pose)
     assert "unfinished" not in json_of(nonholo("info", stopped, "--json"))
 
@@ -86,10 +86,10 @@ def test_picture_that_a_kill_has_cost_is_drawn(nonholo: Command) -> None:
     command = ("simulate", "sleigh", "--steps", 20, "-o", "run.zarr")
     assert nonholo(*command).exit_code == 0
     Path("run.png").unlink()
-    made = Path("run.zarr/zarr.json").stat().st_mtime_ns
+    things = Path("run.zarr/zarr.json").stat().st_mtime_ns
     assert nonholo(*command).exit_code == 0
     assert Path("run.png").exists()
-    assert Path("run.zarr/zarr.json").stat().st_mtime_ns == made
+    assert Path("run.zarr/zarr.json").stat().st_mtime_ns == things
 
 
 def test_damage_is_told_on_standard_error(stopped: Path, nonholo: Command) -> None:
@@ -153,11 +153,11 @@ def store() -> Path:
 
 def test_standard_output_is_the_file(store: Path, nonholo: Command) -> None:
     """Without -o the rows go to standard output and nothing else does; with it the path does."""
-    shown = assert_ends(nonholo("export", store), 0)
-    assert shown.stderr == ""
+    text = assert_ends(nonholo("export", store), 0)
+    assert text.stderr == ""
     assert nonholo("export", store, "-o", "poses.csv").stdout == "poses.csv\n"
     nh.load_orbit(store).to_csv("orbit.csv")
-    assert shown.stdout == Path("poses.csv").read_text() == Path("orbit.csv").read_text()
+    assert text.stdout == Path("poses.csv").read_text() == Path("orbit.csv").read_text()
 
 
 def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:

@@ -42,16 +42,16 @@ def test_all_problems_at_once() -> None:
         .replace("steps = 3", 'steps = "3"')
         .replace("[0.1, 1, 0]", "[0.1, true, 0]")
     )
-    found = _problems(text)
-    assert len(found) == 4
-    assert "my.toml: body.a: is missing" in found
-    assert "my.toml: body.aa: is not a known key. Did you mean a?" in found
-    assert any(f.startswith("my.toml: start.body_velocity[1]: must be a valid number") for f in found)
-    assert "my.toml: run.steps: must be a valid integer. Got '3'" in found
+    result = _problems(text)
+    assert len(result) == 4
+    assert "my.toml: body.a: is missing" in result
+    assert "my.toml: body.aa: is not a known key. Did you mean a?" in result
+    assert any(f.startswith("my.toml: start.body_velocity[1]: must be a valid number") for f in result)
+    assert "my.toml: run.steps: must be a valid integer. Got '3'" in result
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ('kind = "sleigh"', 'kind = "slegh"', "body: must have a known kind. Got 'slegh'. Did you mean s"),
         ('kind = "sleigh"', "", f"body: must have a known kind. Got none. Known: {', '.join(SHORT)}, "),
@@ -65,27 +65,27 @@ def test_all_problems_at_once() -> None:
         ("mass = 1", "mass = 1\nmass = 2", "is not valid TOML"),
     ],
 )
-def test_a_problem_is_told_with_its_place(old: str, new: str, told: str) -> None:
+def test_a_problem_is_told_with_its_place(old: str, new: str, message: str) -> None:
     """What is unknown, missing, double or refused by the library has its key path; what is no TOML its line."""
     (problem,) = _problems(_GOOD.replace(old, new))
-    assert told in problem
+    assert message in problem
     assert problem.startswith("my.toml: ")
-    assert "line" in problem or "TOML" not in told
+    assert "line" in problem or "TOML" not in message
 
 
 def test_unreadable_files(tmp_path: Path) -> None:
     """A missing file, a folder and bytes that are no text are refused; a near miss of a built-in name is suggested."""
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
-    for name, told in (("sleig", "Did you mean sleigh?"), (".", "cannot be read"), ("binary.toml", "cannot be read")):
-        with pytest.raises(ScenarioError, match=told.replace("?", r"\?")):
+    for name, report in (("sleig", "Did you mean sleigh?"), (".", "cannot be read"), ("binary.toml", "cannot be read")):
+        with pytest.raises(ScenarioError, match=report.replace("?", r"\?")):
             load_scenario(name, [])
 
 
 def test_settings_name_their_option() -> None:
     """A wrong value or path from the command line is reported with the option, the rest with the file."""
-    found = _problems(_GOOD.replace("mass = 1", "mass = -1"), "body.a=nan", "start.velocity=1")
-    assert found[0] == "--set body.a=nan: body.a: must be a finite number. Got nan"
-    assert found[1].startswith("--set start.velocity=1: start.velocity: is not a known key. Did you mean")
+    result = _problems(_GOOD.replace("mass = 1", "mass = -1"), "body.a=nan", "start.velocity=1")
+    assert result[0] == "--set body.a=nan: body.a: must be a finite number. Got nan"
+    assert result[1].startswith("--set start.velocity=1: start.velocity: is not a known key. Did you mean")
     assert "mass is a value, not a table" in _problems(_GOOD, "body.mass.x=1")[0]
 
 
@@ -129,9 +129,9 @@ BOMBS = {
 @pytest.mark.parametrize("name", BOMBS)
 def test_bombs_are_refused(name: str, command: str, nonholo: Command) -> None:
     """What would fill memory or stack is reported as a problem of the scenario."""
-    text, told = BOMBS[name]
+    text, report = BOMBS[name]
     Path("bomb.toml").write_bytes(text.encode(errors="surrogatepass"))
-    assert_ends(nonholo(command, "bomb.toml"), 2, told)
+    assert_ends(nonholo(command, "bomb.toml"), 2, report)
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "pipe", ".", "x" * 5000])
@@ -161,11 +161,11 @@ _FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswit
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
 def test_example_runs(path: Path, figures: Figures) -> None:
     """Each example succeeds, with energy kept to rounding where the discretization promises it; not under forces."""
-    told = figures(path, *(["--steps", 20] if path.stem == "logarithmic_difference" else []))
-    assert told["outcome"] == "successful"
+    report = figures(path, *(["--steps", 20] if path.stem == "logarithmic_difference" else []))
+    assert report["outcome"] == "successful"
     drifts = {"logarithmic_difference": 1e-3, "hanging_top": 1e-3, "twisted_sleigh": 1e-2}
-    assert told["energy_drift"] < drifts.get(path.stem, 1e-12)
-    assert told["constraint_residual"] < 1e-14
+    assert report["energy_drift"] < drifts.get(path.stem, 1e-12)
+    assert report["constraint_residual"] < 1e-14
 
 
 def test_balanced_sleigh_moves_on_a_circle(figures: Figures) -> None:
@@ -201,13 +201,13 @@ def _swept(nonholo: Command, name: str, members: int) -> Any:
 @pytest.mark.profile("routes", instead="test_deviation_of_one_orbit")
 def test_turning_sweep_shows_the_closed_form(nonholo: Command) -> None:
     """The lowest row deviates by h^2 J / (24 (1 + J)^2); below the bound no member is lost, most are above."""
-    found = _swept(nonholo, "sleigh_turning_sweep", 400)
-    J, h = found["inertia"].values, found["time_step"].values
-    row = found["turning_deviation"].values[:, 0] / (h[0] ** 2 * J / (24 * (1 + J) ** 2))
+    result = _swept(nonholo, "sleigh_turning_sweep", 400)
+    J, h = result["inertia"].values, result["time_step"].values
+    row = result["turning_deviation"].values[:, 0] / (h[0] ** 2 * J / (24 * (1 + J) ** 2))
     assert np.abs(row - 1).max() < 0.01  # 0.3 h^2, with h = 0.1
     sleighs = [nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0) for inertia in J]
     bound = np.sqrt([2 * nh.single_valued_region(sleigh).principal_energy for sleigh in sleighs])
-    lost = found["outcome"].values != 0
+    lost = result["outcome"].values != 0
     below = h < bound[:, None]
     assert not lost[below].any()
     assert lost[~below].mean() > 0.5
@@ -216,13 +216,13 @@ def test_turning_sweep_shows_the_closed_form(nonholo: Command) -> None:
 @pytest.mark.profile("problems", instead="test_deviation_of_one_orbit")
 def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Command) -> None:
     """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
-    found = _swept(nonholo, "random_tops_sweep", 100)
-    tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in found["mass_tensor"].values]
-    momenta = np.stack([found["momentum_0"], found["momentum_1"]], axis=1)
+    result = _swept(nonholo, "random_tops_sweep", 100)
+    tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in result["mass_tensor"].values]
+    momenta = np.stack([result["momentum_0"], result["momentum_1"]], axis=1)
     saddles = [nh.critical_energies(top).saddle for top in tops]
     energies = [float(top.system.constrained_energy(p)) for top, p in zip(tops, momenta, strict=True)]
-    part, kept = np.array(energies) / np.array(saddles, dtype=float), found["outcome"].values == 0
-    assert kept[part < 1].all()
-    assert not kept[part > 2].any()
+    part, successful = np.array(energies) / np.array(saddles, dtype=float), result["outcome"].values == 0
+    assert successful[part < 1].all()
+    assert not successful[part > 2].any()
     assert 10 < (part < 1).sum() < 90
-    assert np.nanmax(found["energy_drift"]) < 2e-15
+    assert np.nanmax(result["energy_drift"]) < 2e-15

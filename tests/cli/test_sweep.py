@@ -85,11 +85,11 @@ def test_the_former_word_for_random_numbers_is_read() -> None:
 
 def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
     """Each cell of a swept grid has the turn of the orbit that `simulate` runs for its values, to rounding."""
-    told = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))
-    assert told["store"] == "runs/my-001.zarr"
-    assert told["outcomes"] == {"successful": 8}
-    found = nh.load_sweep(told["store"])
-    cell = found.isel({"a": 1, "restricted_velocity_0": 2})
+    report = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))
+    assert report["store"] == "runs/my-001.zarr"
+    assert report["outcomes"] == {"successful": 8}
+    result = nh.load_sweep(report["store"])
+    cell = result.isel({"a": 1, "restricted_velocity_0": 2})
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
     orbit = nh.simulate(discrete, restricted_velocity=(float(cell["restricted_velocity_0"]), -1.0), steps=20)
     assert abs(float(cell["heading_turn"]) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03
@@ -151,19 +151,19 @@ def test_members_of_a_random_design(nonholo: Command) -> None:
     """`--members 1e2` draws this many, of which the first are those of a smaller design."""
     few, many = (json_of(nonholo("sweep", _written(RANDOM), "--members", n, "--json", "--no-plot")) for n in (5, "1e2"))
     assert (few["members"], many["members"]) == (5, 100)
-    first, second = (nh.load_sweep(told["store"]) for told in (few, many))
+    first, second = (nh.load_sweep(report["store"]) for report in (few, many))
     assert first.equals(second.isel(member=slice(5)))
 
 
 def test_members_of_lists_are_refused() -> None:
     """A grid of lists has no count to scale."""
     text = GRID.replace("{from = 0.1, to = 0.4, count = 4}", "[0.1, 0.2]")
-    told = _problems(text, "design.members=100")
-    assert told == ["--set design.members=100: design.members: needs a range with a count to scale"]
+    report = _problems(text, "design.members=100")
+    assert report == ["--set design.members=100: design.members: needs a range with a count to scale"]
 
 
 @pytest.mark.parametrize(
-    ("given", "kind"),
+    ("values", "kind"),
     [
         ("{uniform = [0.1, 0.2]}", nh.Uniform(0.1, 0.2)),
         ("{log_uniform = [0.1, 10]}", nh.LogUniform(0.1, 10)),
@@ -171,17 +171,17 @@ def test_members_of_lists_are_refused() -> None:
         ("{choice = [0.5, 1.0]}", nh.Choice([0.5, 1.0])),
     ],
 )
-def test_distributions(given: str, kind: Any) -> None:
+def test_distributions(values: str, kind: Any) -> None:
     """Each spelling is the distribution of that name; a direction has the length of the start that it replaces."""
-    design = _design(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
+    design = _design(RANDOM.replace("{uniform = [0.2, 1.0]}", values))
     assert design.distributions == {"a": kind, "restricted_velocity": nh.Direction(2, 1.0)}
 
 
 def test_what_varies_may_be_left_out(nonholo: Command) -> None:
     """A key that the design varies need not stand in its own table."""
     text = GRID.replace("a = 0.5\n", "", 1)
-    found = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
-    assert found["a"].values.tolist() == [0.3, 0.5]
+    result = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    assert result["a"].values.tolist() == [0.3, 0.5]
 
 
 def test_all_problems_at_once_are_refused() -> None:
@@ -193,18 +193,18 @@ def test_all_problems_at_once_are_refused() -> None:
         .replace('"energy_drift"', '"energy_drfit"')
         .replace("color =", "colour =")
     )
-    found = _problems(text)
-    assert len(found) == 5
-    assert "my.toml: body.mass: must be a valid number. Got True" in found
-    assert any(f.startswith("my.toml: design.values.body.a: must be a list of numbers") for f in found)
+    result = _problems(text)
+    assert len(result) == 5
+    assert "my.toml: body.mass: must be a valid number. Got True" in result
+    assert any(f.startswith("my.toml: design.values.body.a: must be a list of numbers") for f in result)
     where = "my.toml: design.values.start.restricted_velocity[0]"
-    assert f"{where}.count: must be greater than 0. Got 0" in found
-    assert any(f.startswith("my.toml: keep.reductions[1]: must be 'final_state', ") for f in found)
-    assert "my.toml: output.colour: is not a known key. Did you mean color?" in found
+    assert f"{where}.count: must be greater than 0. Got 0" in result
+    assert any(f.startswith("my.toml: keep.reductions[1]: must be 'final_state', ") for f in result)
+    assert "my.toml: output.colour: is not a known key. Did you mean color?" in result
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ('"body.a"', '"body.kind"', "design.values.body.kind: cannot be varied. Known: mass, inertia, a, b."),
         ('"body.a"', '"run.steps"', "design.values.run.steps: cannot be varied. Known: time_step."),
@@ -222,13 +222,13 @@ def test_all_problems_at_once_are_refused() -> None:
         ("[keep]", "[kep]", "kep: is not a known key. Did you mean keep?"),
     ],
 )
-def test_what_is_refused(old: str, new: str, told: str) -> None:
+def test_what_is_refused(old: str, new: str, message: str) -> None:
     """What a sweep cannot do is reported with its key path and what there is instead."""
-    assert any(told in problem for problem in _problems(GRID.replace(old, new)))
+    assert any(message in problem for problem in _problems(GRID.replace(old, new)))
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("values", "message"),
     [
         ("{unifrom = [0, 1]}", "must hold one of uniform, log_uniform, normal, direction, mass_tensor, choice"),
         ("{uniform = 1}", "must be uniform = [low, high]. Got 1"),
@@ -238,11 +238,11 @@ def test_what_is_refused(old: str, new: str, told: str) -> None:
         ("{mass_tensor = [0.5, 2.0]}", "needs size = ..., the length of the matrices"),
     ],
 )
-def test_distributions_that_are_refused(given: str, told: str) -> None:
+def test_distributions_that_are_refused(values: str, message: str) -> None:
     """A distribution that cannot be drawn is reported with its key path."""
-    (problem,) = _problems(RANDOM.replace("{uniform = [0.2, 1.0]}", given))
+    (problem,) = _problems(RANDOM.replace("{uniform = [0.2, 1.0]}", values))
     assert problem.startswith("my.toml: design.values.body.a: ")
-    assert told in problem
+    assert message in problem
 
 
 def test_the_stored_scenario_repeats_the_sweep(nonholo: Command) -> None:
@@ -265,10 +265,10 @@ def test_info_of_a_sweep(nonholo: Command) -> None:
     store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
     words = ("ChaplyginSleigh", "Grid, seed 0", "successful", "heading_turn", "members/s", "sha256", "numba")
     assert_shows(nonholo("info", store), *words)
-    told = json_of(nonholo("info", store, "--json"))
-    assert told["done"] == told["members"] == 8
-    assert told["state"] == "finished"
-    assert told["provenance"]["task"]["steps"] == 20
+    report = json_of(nonholo("info", store, "--json"))
+    assert report["done"] == report["members"] == 8
+    assert report["state"] == "finished"
+    assert report["provenance"]["task"]["steps"] == 20
 
 
 def test_a_sweep_without_a_single_result_fails(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -282,8 +282,8 @@ def test_a_sweep_without_a_single_result_fails(nonholo: Command, monkeypatch: py
 
     monkeypatch.setattr(nh.EnsembleTask, "__call__", unlucky)
     for command in (("sweep", _written(GRID), "--no-plot", "-o", "a.zarr"), ("resume", "a.zarr")):
-        found = assert_ends(nonholo(*command), 1)
-        assert found.stderr.splitlines()[-1] == "Every member raised: ValueError: no luck"
+        result = assert_ends(nonholo(*command), 1)
+        assert result.stderr.splitlines()[-1] == "Every member raised: ValueError: no luck"
 
 
 def test_failed_members_are_told(nonholo: Command) -> None:
@@ -344,16 +344,16 @@ def test_stopping_signals(name: str) -> None:
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
     wait_for(lambda: list(Path().glob("s.zarr/run/blocks/*.json")))
     process.send_signal(getattr(signal, name))
-    told = process.communicate(timeout=120)[1]
+    report = process.communicate(timeout=120)[1]
     assert process.returncode == 1
-    assert "Resume with: nonholo resume s.zarr" in told
+    assert "Resume with: nonholo resume s.zarr" in report
     assert not list(Path("s.zarr/run").glob("lock*"))
     standing = standing_of("s.zarr")
     assert 0 < standing.done < standing.members
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("sweep", "--scheduler", "nix"), "must be one of threads, processes, synchronous or an address"),
         (("sweep", "--members", "2.5"), "--members 2.5: design.members: must be a valid integer"),
@@ -362,9 +362,9 @@ def test_stopping_signals(name: str) -> None:
         (("simulate",), "nonholo sweep my.toml"),
     ],
 )
-def test_options_that_are_refused(words: tuple[str, ...], told: str, nonholo: Command) -> None:
+def test_options_that_are_refused(words: tuple[str, ...], message: str, nonholo: Command) -> None:
     """A bad option, and a command for one motion, end with exit code 2 before there is a store."""
-    assert_ends(nonholo(words[0], _written(GRID), *words[1:]), 2, told)
+    assert_ends(nonholo(words[0], _written(GRID), *words[1:]), 2, message)
     assert not list(Path().glob("runs/*"))
 
 
@@ -391,9 +391,9 @@ def test_plot_of_a_sweep(nonholo: Command) -> None:
 def test_template_runs(nonholo: Command) -> None:
     """`nonholo new sweep` prints a scenario that runs as it is."""
     text = nonholo("new", "sweep").stdout
-    told = json_of(nonholo("sweep", _written(text), "--members", 12, "--set", "run.steps=50", "--json"))
-    assert told["outcomes"] == {"successful": 12}
-    assert Path(told["picture"]).exists()
+    report = json_of(nonholo("sweep", _written(text), "--members", 12, "--set", "run.steps=50", "--json"))
+    assert report["outcomes"] == {"successful": 12}
+    assert Path(report["picture"]).exists()
 
 
 @pytest.mark.profile("routes", instead="test_template_runs")
@@ -401,22 +401,22 @@ def test_the_scenario_of_the_page(nonholo: Command) -> None:
     """Its scenario, with a body and a start, runs."""
     page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"
     (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
-    told = json_of(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
-    assert told["members"] == 12
+    report = json_of(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
+    assert report["members"] == 12
 
 
-@pytest.mark.parametrize("given", ["", "restricted_velocity = [7.0, 7.0]\n"])
-def test_a_start_that_is_varied_whole_need_not_be_given(given: str, nonholo: Command) -> None:
+@pytest.mark.parametrize("values", ["", "restricted_velocity = [7.0, 7.0]\n"])
+def test_a_start_that_is_varied_whole_need_not_be_given(values: str, nonholo: Command) -> None:
     """Where every component of the start is varied the scenario may leave it out; the result is the same."""
     varied = '"start.restricted_velocity[1]" = [-1.0, 0.5]\n[keep]'
-    text = GRID.replace("restricted_velocity = [0.3, -1.0]\n", given).replace("[keep]", varied)
-    found = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
-    cell = found.sel(a=0.5, restricted_velocity_0=0.2, restricted_velocity_1=0.5)
+    text = GRID.replace("restricted_velocity = [0.3, -1.0]\n", values).replace("[keep]", varied)
+    result = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    cell = result.sel(a=0.5, restricted_velocity_0=0.2, restricted_velocity_1=0.5)
     orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.2, 0.5), steps=20)
     assert abs(float(cell.heading_turn) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03
 
 
 def test_half_a_start_is_refused() -> None:
     """Where a component is neither varied nor given the scenario is refused with what is missing."""
-    found = _problems(GRID.replace("restricted_velocity = [0.3, -1.0]\n", "").replace("velocity[0]", "velocity[1]"))
-    assert any(problem.startswith("my.toml: start: ") for problem in found), found
+    result = _problems(GRID.replace("restricted_velocity = [0.3, -1.0]\n", "").replace("velocity[0]", "velocity[1]"))
+    assert any(problem.startswith("my.toml: start: ") for problem in result), result

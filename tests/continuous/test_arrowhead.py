@@ -129,5 +129,5 @@ def test_an_event_of_momenta_alone() -> None:
     top = SYSTEMS["suslov 4"]
     start = {"restricted_velocity": _velocity(top), "times": (0.0, 9.0), "reconstruct": False}
     middle = nh.flow(top, **start).at(4.0).restricted_momentum[0, 0]
-    found = nh.flow(top, **start, events=[lambda orbit: orbit.restricted_momentum[:, 0] - middle]).events[0]
-    assert np.abs(found.time - 4.0).min() <= 1e-12
+    result = nh.flow(top, **start, events=[lambda orbit: orbit.restricted_momentum[:, 0] - middle]).events[0]
+    assert np.abs(result.time - 4.0).min() <= 1e-12

@@ -148,8 +148,8 @@ def test_antiderivative_by_quadrature(ratio: float, start: float, elapsed: float
         def integrand(s: mpf) -> mpmath.mpc:
             return mp.tanh(s) * mp.exp(mp.j * mpf(ratio) * (_gudermannian(s) - phi))
 
-        found = mp.quad(integrand, mp.linspace(mpf(start), mpf(start) + mpf(elapsed), 40))
-        assert abs(found - _reference(ratio, start, elapsed)[1]) <= mpf(10) ** -40
+        result = mp.quad(integrand, mp.linspace(mpf(start), mpf(start) + mpf(elapsed), 40))
+        assert abs(result - _reference(ratio, start, elapsed)[1]) <= mpf(10) ** -40
 
 
 @pytest.mark.profile("problems", keep=["-20.0-2.6"])

@@ -72,10 +72,10 @@ def test_conserved_and_constrained(problem: Problem, method: str | None) -> None
     """Constraint and group hold to rounding, energy to the error of the steps (closed form: to rounding)."""
     velocity, g = _start(problem)
     times = np.linspace(0.0, 20.0, 41)
-    found = nh.invariants(nh.flow(problem.system, body_velocity=velocity, configuration=g, times=times, method=method))
-    assert found.energy_drift <= (1e-8 if method is None else 1e-14)
-    assert found.constraint_residual <= 1e-13
-    assert found.group_residual <= 1e-14
+    result = nh.invariants(nh.flow(problem.system, body_velocity=velocity, configuration=g, times=times, method=method))
+    assert result.energy_drift <= (1e-8 if method is None else 1e-14)
+    assert result.constraint_residual <= 1e-13
+    assert result.group_residual <= 1e-14
 
 
 @EACH
@@ -85,8 +85,8 @@ def test_vector_field_under_jax(problem: Problem) -> None:
     states = np.random.default_rng(3).normal(size=(4, 11))
     expected = np.stack([field(0.0, state) for state in states])
     with jax.enable_x64(True):
-        found = np.asarray(jax.jit(field)(0.0, states))
-    assert np.abs(found - expected).max() <= 1e-13 * np.abs(expected).max()
+        result = np.asarray(jax.jit(field)(0.0, states))
+    assert np.abs(result - expected).max() <= 1e-13 * np.abs(expected).max()
     assert np.abs(field(0.0, states) - expected).max() <= 1e-14 * np.abs(expected).max()
 
 
@@ -151,7 +151,7 @@ def _forced(case: dict[str, Any]) -> nh.Forced:
     heavy = nh.Gravity(FORCES["weight"][:n], point[:n])
     potentials: dict[str, Any] = {"weight": heavy, "spring": spring}
     forces: dict[str, Callable[..., Any] | nh.Friction] = {"drive": drive, "friction": nh.Friction(C)}
-    potential, force = (next((made[k] for k in made if k in acting), None) for made in (potentials, forces))
+    potential, force = (next((things[k] for k in things if k in acting), None) for things in (potentials, forces))
     return nh.Forced(system, potential, force)
 
 

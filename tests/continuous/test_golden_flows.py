@@ -27,8 +27,8 @@ def _flow(case: dict, **options: object) -> nh.Orbit:
     return nh.flow(golden_system(case), **start, **options)
 
 
-def _miss(found: np.ndarray, reference: list) -> float:
-    return float(np.abs(found - numbers(reference)).max())
+def _miss(result: np.ndarray, reference: list) -> float:
+    return float(np.abs(result - numbers(reference)).max())
 
 
 @pytest.mark.parametrize("case", CASES, ids=_name)
@@ -80,8 +80,8 @@ def test_diffrax_arrives_at_the_same_states(name: str) -> None:
     for times in (np.linspace(0.0, 6.0, 8), np.linspace(1.0, -2.0, 4)):
         compiled, other = (nh.flow(system, **start, times=times, method=method) for method in (None, "diffrax"))
         for value in ("momentum", "configuration", "body_velocity", "multipliers"):
-            found, expected = getattr(compiled, value), getattr(other, value)
-            assert np.abs(found - expected).max(initial=0.0) <= 1e-8 * max(1.0, np.abs(expected).max(initial=0.0))
+            result, expected = getattr(compiled, value), getattr(other, value)
+            assert np.abs(result - expected).max(initial=0.0) <= 1e-8 * max(1.0, np.abs(expected).max(initial=0.0))
         if system.group == nh.SE(2):
             assert np.abs(compiled.heading - other.heading).max() <= 1e-8 * max(1.0, np.abs(other.heading).max())
 

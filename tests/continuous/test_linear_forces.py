@@ -41,10 +41,10 @@ def _start(body: AbstractSystem, seed: int = 5) -> dict[str, Any]:
     return {"restricted_velocity": rng.normal(size=body.rank) / 2, "configuration": body.group.random(rng)}
 
 
-def _missed(found: np.ndarray, wanted: np.ndarray) -> float:
+def _missed(result: np.ndarray, wanted: np.ndarray) -> float:
     """Return the largest error, relative to the size of each row."""
     scale = np.maximum(1.0, np.abs(wanted).reshape(len(wanted), -1).max(axis=1, initial=0.0))
-    gaps = np.abs(found - wanted).reshape(len(wanted), -1).max(axis=1, initial=0.0)
+    gaps = np.abs(result - wanted).reshape(len(wanted), -1).max(axis=1, initial=0.0)
     return float((gaps / scale).max())
 
 
@@ -110,8 +110,10 @@ def test_states_between_and_among_others(name: str) -> None:
     """A state has the same bits alone, among thousands, and asked for later; so have those of a start at rest."""
     forced, start = _under(BODIES[name], "weight and friction"), _start(BODIES[name])
     for factor in (1.0, 0.0):
-        given = start | {"restricted_velocity": factor * start["restricted_velocity"]}
-        alone, among = (nh.flow(forced, **given, times=times) for times in ((0.0, 9.0), np.arange(9 * 128 + 1) / 128))
+        arguments = start | {"restricted_velocity": factor * start["restricted_velocity"]}
+        alone, among = (
+            nh.flow(forced, **arguments, times=times) for times in ((0.0, 9.0), np.arange(9 * 128 + 1) / 128)
+        )
         for orbit in (alone, alone.at(among.time)):
             chosen = among.at([0.0, 9.0]) if len(orbit) == 2 else among
             assert_same(orbit, chosen, "reduced_momentum", "configuration")
@@ -163,15 +165,15 @@ def test_small_things_keep_their_digits() -> None:
 def test_events_under_a_weight() -> None:
     """A crossing is located where DOP853 of a function that is the same potential has it."""
     F, x = np.array([0.3, -0.2, -1.0]), np.array([0.2, 0.1, 0.5])
-    found = [
+    result = [
         nh.flow(
             nh.Forced(TILTED, potential), restricted_velocity=(0.4, -0.5), times=np.linspace(0.0, 6.0, 3),
             events=[lambda orbit: orbit.configuration[:, 2, 2] - 0.5],
         ).events[0].time
         for potential in (nh.Gravity(F, x), lambda g: -F @ g @ x)
     ]  # fmt: skip
-    assert len(found[0]) >= 1
-    assert found[0] == pytest.approx(found[1], abs=1e-10)
+    assert len(result[0]) >= 1
+    assert result[0] == pytest.approx(result[1], abs=1e-10)
 
 
 @pytest.mark.parametrize("heavy", [None, nh.Gravity([3.0, -1.0], [0.1, 0.2])], ids=["friction", "weight"])
@@ -189,14 +191,14 @@ def test_stiff_and_other_steps_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     """A flow that is solved by series and by the implicit method, whose errors are 1e-9 a step; exact along a line."""
     blade = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), nh.Gravity([2.0, 0.0], [0.0, 0.0]), nh.Friction([0, 5e3, 0]))
     slow, times = _under(TILTED, "weight and friction"), np.linspace(0.0, 5.0, 11)
-    found = []
+    result = []
     for bound in (2e6, 0.0):
         monkeypatch.setattr(_forced, "_STIFF", bound)
-        found.append(nh.flow(slow, restricted_velocity=(0.4, -0.5), times=times))
+        result.append(nh.flow(slow, restricted_velocity=(0.4, -0.5), times=times))
         line = nh.flow(blade, body_velocity=(0.0, 1.0, 0.0), times=times)
         exact = 2.0 / 5e3 + (1 - 2.0 / 5e3) * np.exp(-5e3 * times)
         assert np.abs(line.body_velocity[:, 1] - exact).max() < (1e-15 if bound else 1e-10)
-    assert 0 < np.abs(found[0].configuration - found[1].configuration).max() < 1e-7
+    assert 0 < np.abs(result[0].configuration - result[1].configuration).max() < 1e-7
 
 
 def test_fast_motions_of_members_end_early() -> None:

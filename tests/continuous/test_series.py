@@ -59,9 +59,9 @@ def test_quadratic_equations_are_the_vector_field(name: str, compact: bool, monk
         pose = group.pose_from_matrix(g)
         moved = group.pose_rate(pose, velocity)
     turning = velocity[: 1 if group == nh.SE(2) else 0]
-    found = _rate(f, np.concatenate([pose, np.ones_like(turning), head]))
+    result = _rate(f, np.concatenate([pose, np.ones_like(turning), head]))
     scale = 1e-13 * (1 + np.abs(expected).max(initial=0.0)) * (1 + np.abs(head).max(initial=0.0))
-    assert np.abs(found - np.concatenate([moved, turning, rates])).max() <= scale
+    assert np.abs(result - np.concatenate([moved, turning, rates])).max() <= scale
 
 
 @pytest.mark.profile(
@@ -72,14 +72,14 @@ def test_compact_poses_and_matrices_arrive_at_the_same_states(name: str, monkeyp
     """Two systems of equations for one motion, backward in time, agree to 1e-12."""
     system = SYSTEMS[name]
     start = {"restricted_velocity": np.cos(1.0 + np.arange(len(system.constraint_subspace)))}
-    found = []
+    result = []
     for compact in (1000, 0):
         monkeypatch.setattr(_series, "_COMPACT", compact)
         _series.quadratic.cache_clear()
-        found.append(nh.flow(system, **start, times=(0.0, -1.0, -7.0)))
+        result.append(nh.flow(system, **start, times=(0.0, -1.0, -7.0)))
     _series.quadratic.cache_clear()
     for value in ("momentum", "configuration"):
-        one, other = (getattr(orbit, value) for orbit in found)
+        one, other = (getattr(orbit, value) for orbit in result)
         assert np.abs(one - other).max(initial=0.0) <= 1e-12 * (1 + np.abs(one).max(initial=0.0))
 
 
@@ -110,11 +110,11 @@ def test_units_of_many_motions_are_those_of_each() -> None:
 def test_kept_room_leaves_no_trace() -> None:
     """A flow has the same bits after another one of as many components, in its thread and in a new one."""
     flows = [functools.partial(nh.flow, TOP, restricted_velocity=w, times=(0.0, 9.0)) for w in ((0.8, -0.5), (90, 7))]
-    found = [flow().canonical_pose for flow in (*flows, flows[0])]
+    result = [flow().canonical_pose for flow in (*flows, flows[0])]
     with ThreadPoolExecutor(1) as pool:
-        found.append(pool.submit(flows[0]).result().canonical_pose)
-    assert all(np.array_equal(found[0], again) for again in found[2:])
-    assert not np.array_equal(found[0], found[1])
+        result.append(pool.submit(flows[0]).result().canonical_pose)
+    assert all(np.array_equal(result[0], again) for again in result[2:])
+    assert not np.array_equal(result[0], result[1])
 
 
 @pytest.mark.parametrize("size", [2.0**-400, 2.0**-40, 2.0**300])
@@ -134,8 +134,8 @@ def test_units_of_time_change_no_bit(system: AbstractSystem, posed: bool, size: 
 def test_the_error_is_what_was_asked_for(rtol: float) -> None:
     """Over ten units of time the error is at most 30 times that of a step, and the end costs less than it."""
     for system in (TOP, SLEIGH):
-        exact, found = (nh.flow(system, **START, times=(0.0, 10.0), rtol=r).configuration[-1] for r in (1e-14, rtol))
-        assert 0 < np.abs(found - exact).max() <= 30 * rtol
+        exact, result = (nh.flow(system, **START, times=(0.0, 10.0), rtol=r).configuration[-1] for r in (1e-14, rtol))
+        assert 0 < np.abs(result - exact).max() <= 30 * rtol
 
 
 @pytest.mark.parametrize(
@@ -216,8 +216,8 @@ def test_states_between_are_those_that_had_been_requested(
         columns = [x for x in ("reduced_momentum", "canonical_pose", "turned") if getattr(wanted, x) is not None]
         assert_same(ends, wanted.chosen(np.array([0, -1])), *columns)
         mixed = rng.permutation(len(times))
-        found = ends[-1:].at(times[mixed])
-        assert_same(found, wanted.chosen(mixed), *columns)
+        result = ends[-1:].at(times[mixed])
+        assert_same(result, wanted.chosen(mixed), *columns)
         one = pickle.loads(pickle.dumps(ends)).at(times[7])  # noqa: S301
         assert np.array_equal(one.reduced_momentum[0], wanted.reduced_momentum[7])
 
@@ -235,10 +235,10 @@ def test_states_between_by_other_methods(method: str) -> None:
     for system in (SLEIGH, TOP):
         ends = nh.flow(system, **START, times=(2.0, -6.0), method=method, rtol=1e-12)
         wanted = nh.flow(system, **START, times=(2.0, 2.0 - 1e-3, -4.0, -6.0))
-        found = ends.at((-4.0, 2.0, -4.0, -6.0, 2.0 - 1e-3))
+        result = ends.at((-4.0, 2.0, -4.0, -6.0, 2.0 - 1e-3))
         at = [2, 0, 2, 3, 1]
-        assert np.abs(found.momentum - wanted.momentum[at]).max() <= 1e-9
-        assert np.abs(found.configuration - wanted.configuration[at]).max() <= 1e-9
+        assert np.abs(result.momentum - wanted.momentum[at]).max() <= 1e-9
+        assert np.abs(result.configuration - wanted.configuration[at]).max() <= 1e-9
 
 
 def test_states_between_that_nobody_knows(tmp_path: Path) -> None:

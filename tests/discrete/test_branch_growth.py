@@ -74,9 +74,9 @@ def test_the_map_on_the_axis_is_the_discrete_map(name: str, share: float) -> Non
         r, arrived = _momentum(discrete, energy, before), _momentum(discrete, energy, after)
         V = h * r[1] / body.mass + body.a * (1 - cos) + body.b * sin
         X = np.array([[cos - 1, -sin, V], [sin, cos - 1, t * V], [0, 0, 0]])
-        found = [body.restrict(legendre(discrete, X, side)) for side in ("left", "right")]
+        result = [body.restrict(legendre(discrete, X, side)) for side in ("left", "right")]
         poles = min(1.0, abs(abs(tau) - 1), 1 - axis.turn * abs(tau)) / max(1.0, tau**2)  # rounding grows near them
-        assert np.abs(np.array(found) - [r, arrived]).max() <= 1e-13 / poles * np.abs([r, arrived]).max()
+        assert np.abs(np.array(result) - [r, arrived]).max() <= 1e-13 / poles * np.abs([r, arrived]).max()
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -157,10 +157,10 @@ def test_images_are_as_many_as_words() -> None:
 def test_balls_prove_what_doubles_find(name: str, share: float) -> None:
     """The certificate has the words and, to rounding, the discs of the search."""
     pytest.importorskip("flint")
-    found, proved = _growth(name, share, False), _growth(name, share, True)
-    assert (found.certified, proved.certified) == (False, True)
-    assert found.words == proved.words
-    assert np.abs(found.discs - proved.discs).max() <= 1e-5 * proved.discs[0, 1]
+    result, proved = _growth(name, share, False), _growth(name, share, True)
+    assert (result.certified, proved.certified) == (False, True)
+    assert result.words == proved.words
+    assert np.abs(result.discs - proved.discs).max() <= 1e-5 * proved.discs[0, 1]
 
 
 def test_the_certificate_doubts_what_is_false() -> None:
@@ -258,10 +258,10 @@ def test_each_node_follows_its_parent(name: str) -> None:
 def test_the_first_generation_is_branches(name: str) -> None:
     """The images of the root are what `branches` finds, with the same mask of real ones."""
     discrete, tree = _tree(name, 1)
-    found = nh.branches(discrete, displacement=ROOTS[name][1])
-    np.testing.assert_allclose(tree.displacement[1:], found.displacement, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(tree.momentum[1:], found.momentum, rtol=0, atol=1e-11)  # 1/time_step larger
-    assert np.array_equal(tree.is_real[1:], found.is_real)
+    result = nh.branches(discrete, displacement=ROOTS[name][1])
+    np.testing.assert_allclose(tree.displacement[1:], result.displacement, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(tree.momentum[1:], result.momentum, rtol=0, atol=1e-11)  # 1/time_step larger
+    assert np.array_equal(tree.is_real[1:], result.is_real)
 
 
 def test_complex_nodes_have_conjugate_partners() -> None:

@@ -54,11 +54,11 @@ def test_following_from_rest_leads_to_the_principal_value() -> None:
     for _ in range(60):
         r = 1.5 * rng.normal(size=2)
         code, x = followed_on_sphere(frame.equations(0 * r), frame.equations(r), np.array([1.0, 0.0, 0.0]))
-        found = nh.displacements_over(ROD, r)
-        assert (found.principal is None) == (code == nh.Outcome.no_real_branch)
-        if found.principal is not None:
+        result = nh.displacements_over(ROD, r)
+        assert (result.principal is None) == (code == nh.Outcome.no_real_branch)
+        if result.principal is not None:
             W = frame.increment(x) + np.eye(3)
-            assert np.abs(W - found.displacement[found.principal]).max() < 1e-12
+            assert np.abs(W - result.displacement[result.principal]).max() < 1e-12
             far += x[0] < 0
     assert far > 0
 
@@ -96,8 +96,8 @@ def test_nearest_follows_any_real_value() -> None:
         assert np.abs(step.displacement - root[0]).max() < 1e-12
 
 
-def _real(found: Branches) -> np.ndarray:
-    return found.displacement[found.is_real].real
+def _real(result: Branches) -> np.ndarray:
+    return result.displacement[result.is_real].real
 
 
 @pytest.mark.parametrize("discrete", [TOP, SLEIGH, MOTION], ids=["top", "sleigh", "motion"])
@@ -106,16 +106,16 @@ def test_smallest_and_largest_compare_full_momenta(discrete: nh.Discretization, 
     """The real value with the smallest or largest norm of all components follows."""
     r = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
     after = nh.step(discrete, r, branch=branch)
-    found = nh.branches(discrete, momentum=r)
-    norms = sign * np.linalg.norm(found.momentum[found.is_real], axis=1)
+    result = nh.branches(discrete, momentum=r)
+    norms = sign * np.linalg.norm(result.momentum[result.is_real], axis=1)
     assert sign * np.linalg.norm(after.momentum) == pytest.approx(norms.min(), rel=1e-12)
 
 
 def test_inner_and_outer_stay_in_their_region() -> None:
     """In the regular regime both parts of the invariant curve are invariant under their rule."""
-    found = nh.displacements_over(FOUR, [0.2, 0.1])
-    assert found.region[found.is_real].tolist() == ["inner", "outer"]
-    for rule, W in zip(("inner", "outer"), _real(found), strict=True):
+    result = nh.displacements_over(FOUR, [0.2, 0.1])
+    assert result.region[result.is_real].tolist() == ["inner", "outer"]
+    for rule, W in zip(("inner", "outer"), _real(result), strict=True):
         orbit = nh.simulate(FOUR, displacement=W, steps=10, branch=rule)
         values = [nh.branches(FOUR, displacement=present) for present in orbit.displacement[:-1]]
         pairs = zip(values, orbit.displacement[1:], strict=True)
@@ -124,9 +124,9 @@ def test_inner_and_outer_stay_in_their_region() -> None:
 
 def test_of_three_outer_values_the_nearest_is_taken() -> None:
     """The body with four real values has three outer ones; from an outer W the followed one is chosen."""
-    found = nh.displacements_over(FOUR, FOUR_REAL)
-    assert found.region.tolist() == ["inner", "outer", "outer", "outer"]
-    W = _real(found)[1]
+    result = nh.displacements_over(FOUR, FOUR_REAL)
+    assert result.region.tolist() == ["inner", "outer", "outer", "outer"]
+    W = _real(result)[1]
     outer, nearest = (nh.step(FOUR, nh.discrete_legendre(FOUR, W), branch=rule) for rule in ("outer", "nearest"))
     np.testing.assert_allclose(outer.displacement, nearest.displacement, rtol=0, atol=1e-12)
     inner = nh.step(FOUR, FOUR_REAL, branch="outer")  # from the inner value the path leads to none of the three
@@ -135,16 +135,16 @@ def test_of_three_outer_values_the_nearest_is_taken() -> None:
 
 def test_a_function_gets_the_values_and_the_present() -> None:
     """A callable sees what `branches` finds and W_k, and its index is obeyed."""
-    seen = []
+    calls = []
 
-    def last_real(found: Branches, present: np.ndarray) -> int:
-        seen.append((found, present))
-        return int(np.flatnonzero(found.is_real)[-1])
+    def last_real(result: Branches, present: np.ndarray) -> int:
+        calls.append((result, present))
+        return int(np.flatnonzero(result.is_real)[-1])
 
     after = nh.step(TOP, [0.2, 0.3], branch=last_real)
-    (found, present), expected = seen[0], nh.branches(TOP, momentum=[0.2, 0.3])
-    np.testing.assert_allclose(found.momentum, expected.momentum, rtol=0, atol=1e-11)
-    np.testing.assert_allclose(after.momentum, found.momentum[1].real, rtol=1e-12)
+    (result, present), expected = calls[0], nh.branches(TOP, momentum=[0.2, 0.3])
+    np.testing.assert_allclose(result.momentum, expected.momentum, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(after.momentum, result.momentum[1].real, rtol=1e-12)
     assert np.abs(present - _real(nh.displacements_over(TOP, [0.2, 0.3]))[0]).max() < 1e-12
 
 
@@ -167,9 +167,9 @@ def test_a_double_value_is_unverified(angle: float) -> None:
     back = _real(nh.displacements_over(SLEIGH, -arriving))[0]
     counts = []
 
-    def double(found: Branches, _: np.ndarray) -> int:
-        counts.append(int(found.multiplicity.max()))
-        return int(found.multiplicity.argmax())
+    def double(result: Branches, _: np.ndarray) -> int:
+        counts.append(int(result.multiplicity.max()))
+        return int(result.multiplicity.argmax())
 
     after = nh.step(SLEIGH, nh.discrete_legendre(SLEIGH, nh.SE(2).inverse(back)), branch=double)
     assert counts == [2]

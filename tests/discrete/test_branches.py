@@ -39,13 +39,13 @@ def _at(pi: float, phat: float, a: float = 0.5) -> list[float]:
     return [pi, (phat - 2 * a * a) / a]
 
 
-def _check_definition(discrete: Discretization, found: Branches, r: object) -> None:
+def _check_definition(discrete: Discretization, result: Branches, r: object) -> None:
     """Check group, variety and momentum of every displacement, straight from matrices."""
     system, group = discrete.system, discrete.system.group
     n = len(group.identity) - (0 if np.any(group.basis[:, -1]) else 1)
     tensor = system.homogeneous_mass_tensor / np.abs(system.homogeneous_mass_tensor).max()
     rows = np.einsum("ki,iab->kab", system.constraint_subspace, group.basis)
-    for W in found.displacement:
+    for W in result.displacement:
         size = max(1.0, np.abs(W).max()) ** 2
         R, inverse = W[:n, :n], np.linalg.inv(W)
         assert np.abs(R @ R.T - np.eye(n)).max() <= _DEFINITION * size
@@ -74,16 +74,16 @@ def _reference(case: dict) -> tuple[Discretization, np.ndarray]:
 def test_against_fifty_digits(case: dict, certify: bool) -> None:
     """Every displacement is found, once, and equals its 50-digit value; none is invented."""
     discrete, reference = _reference(case)
-    found = nh.displacements_over(discrete, case["momentum"], certify)
-    assert found.certified == certify
-    assert found.multiplicity.tolist() == [1] * len(reference)
+    result = nh.displacements_over(discrete, case["momentum"], certify)
+    assert result.certified == certify
+    assert result.multiplicity.tolist() == [1] * len(reference)
     left = list(reference)
-    for W in found.displacement:
+    for W in result.displacement:
         missed = [np.abs(W - other).max() / max(1.0, np.abs(other).max()) for other in left]
         assert min(missed) < 1e-10
         left.pop(int(np.argmin(missed)))
     real = np.abs(reference.imag).max(axis=(1, 2)) < 1e-12
-    assert found.is_real.sum() == real.sum()
+    assert result.is_real.sum() == real.sum()
 
 
 _DEFINED = {
@@ -102,14 +102,14 @@ def test_definition(discrete: Discretization, r: list[float]) -> None:
 
     The momenta of real ones are what `discrete_legendre` says, and share the given components and energy.
     """
-    found, system = nh.displacements_over(discrete, r), discrete.system
-    _check_definition(discrete, found, r)
+    result, system = nh.displacements_over(discrete, r), discrete.system
+    _check_definition(discrete, result, r)
     k = len(r)
-    assert found.multiplicity.sum() == (2 * k if isinstance(system, nh.SuslovTop) else 2 * k - 1)
-    for W, P in zip(found.displacement[found.is_real].real, found.momentum[found.is_real], strict=True):
+    assert result.multiplicity.sum() == (2 * k if isinstance(system, nh.SuslovTop) else 2 * k - 1)
+    for W, P in zip(result.displacement[result.is_real].real, result.momentum[result.is_real], strict=True):
         expected = nh.discrete_legendre(discrete, W)
         np.testing.assert_allclose(P, expected, rtol=0, atol=1e-12 * np.abs(expected).max() * np.abs(W).max() ** 2)
-        assert system.constrained_energy(system.restrict(P.real)) == pytest.approx(found.energy, rel=1e-11)
+        assert system.constrained_energy(system.restrict(P.real)) == pytest.approx(result.energy, rel=1e-11)
 
 
 _SPECIAL_B = np.diag([1.0, 1.5, 2.2])
@@ -145,10 +145,10 @@ _SPECIAL = {
 @pytest.mark.parametrize(("discrete", "r", "count"), _SPECIAL.values(), ids=_SPECIAL)
 def test_special_bodies_and_momenta(discrete: Discretization, r: list[float], count: int, certify: bool) -> None:
     """Where the secular polynomial degenerates the isolated roots are still all found, each once, and certified."""
-    found = nh.displacements_over(discrete, r, certify)
-    assert found.certified == certify
-    _check_definition(discrete, found, r)
-    assert found.multiplicity.tolist() == [1] * count
+    result = nh.displacements_over(discrete, r, certify)
+    assert result.certified == certify
+    _check_definition(discrete, result, r)
+    assert result.multiplicity.tolist() == [1] * count
     if certify:
         assert_counted(discrete, r)
 
@@ -171,9 +171,9 @@ _MULTIPLE = {  # of the first the secular polynomial hides two beside the double
 def test_multiple_values(name: str, certify: bool) -> None:
     """Values that are one are counted as often as they are, and no others are taken for copies of them."""
     discrete, r, multiplicity, real = _MULTIPLE[name]
-    found = nh.displacements_over(discrete, r, certify)
-    assert found.multiplicity.tolist() == multiplicity
-    assert found.is_real.tolist() == real
+    result = nh.displacements_over(discrete, r, certify)
+    assert result.multiplicity.tolist() == multiplicity
+    assert result.is_real.tolist() == real
     if certify:
         assert_counted(discrete, r)
 
@@ -189,22 +189,22 @@ def test_a_fold_of_a_top_counts_twice() -> None:
     size = brentq(lambda size: np.linalg.det(derivatives(momentum, size * ray)), 0.1, 2.5, xtol=1e-14)
     folded = group.exp(size * ray @ rows)
     assert nh.fold_distance(discrete, folded) < 1e-8  # of difference quotients
-    found = nh.displacements_over(discrete, momentum(size * ray))
-    assert sorted(found.multiplicity) == [1, 1, 2]
-    double = int(np.argmax(found.multiplicity))
-    assert found.is_real[double]
-    np.testing.assert_allclose(found.displacement[double], folded, atol=1e-6)  # square root of rounding
-    assert found.fold_distance[double] < 1e-6
+    result = nh.displacements_over(discrete, momentum(size * ray))
+    assert sorted(result.multiplicity) == [1, 1, 2]
+    double = int(np.argmax(result.multiplicity))
+    assert result.is_real[double]
+    np.testing.assert_allclose(result.displacement[double], folded, atol=1e-6)  # square root of rounding
+    assert result.fold_distance[double] < 1e-6
 
 
 @pytest.mark.parametrize("t", [0.2, 0.7, -1.1, 2.5])
 def test_the_deltoid_is_the_fold_of_the_sleigh(t: float) -> None:
     """On the deltoid two of the sleigh's three branches meet."""
     pi, phat = 4 * t**3 / (1 + t * t) ** 2, -2 * (1 - t * t) / (1 + t * t) ** 2
-    found = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
-    assert sorted(found.multiplicity) == [1, 2]
-    assert found.is_real.all()
-    assert found.fold_distance[np.argmax(found.multiplicity)] < 1e-6
+    result = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
+    assert sorted(result.multiplicity) == [1, 2]
+    assert result.is_real.all()
+    assert result.fold_distance[np.argmax(result.multiplicity)] < 1e-6
 
 
 @pytest.mark.parametrize("off", [1e-15, -1e-13, 1e-13, -1e-11, 1e-9, -1e-6])
@@ -212,18 +212,18 @@ def test_the_deltoid_is_the_fold_of_the_sleigh(t: float) -> None:
 def test_no_branch_is_lost_near_a_fold(t: float, off: float) -> None:
     """However close to the deltoid, three branches are counted and keep the sum rule to the root of rounding."""
     pi, phat = 4 * t**3 / (1 + t * t) ** 2, -2 * (1 - t * t) / (1 + t * t) ** 2 + off
-    found = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
-    turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
-    assert found.multiplicity.sum() == 3
-    assert (turns * found.multiplicity).sum() == pytest.approx(-(2 * phat + 1) + 2j * pi, abs=1e-6)
+    result = nh.displacements_over(_sleigh(0.5), _at(pi, phat))
+    turns = result.displacement[:, 0, 0] + 1j * result.displacement[:, 1, 0]
+    assert result.multiplicity.sum() == 3
+    assert (turns * result.multiplicity).sum() == pytest.approx(-(2 * phat + 1) + 2j * pi, abs=1e-6)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_three_branches_meet_at_a_cusp(sign: float) -> None:
     """At the upper cusps of the deltoid the root is triple, too."""
-    found = nh.displacements_over(_sleigh(0.5), _at(sign * 3 * np.sqrt(3) / 4, 0.25))
-    assert found.multiplicity.tolist() == [3]
-    assert found.is_real.all()
+    result = nh.displacements_over(_sleigh(0.5), _at(sign * 3 * np.sqrt(3) / 4, 0.25))
+    assert result.multiplicity.tolist() == [3]
+    assert result.is_real.all()
 
 
 def test_sum_rule_of_the_map_of_random_sleighs() -> None:
@@ -235,13 +235,13 @@ def test_sum_rule_of_the_map_of_random_sleighs() -> None:
         sleigh = nh.discretize(nh.ChaplyginSleigh(m, J, a, b), 1.0)
         W = nh.SE(2).exp(rng.normal(size=2) @ sleigh.system.constraint_subspace)
         r = sleigh.system.restrict(nh.discrete_legendre(sleigh, W, "right"))
-        found = nh.branches(sleigh, displacement=W)
-        turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
+        result = nh.branches(sleigh, displacement=W)
+        turns = result.displacement[:, 0, 0] + 1j * result.displacement[:, 1, 0]
         kappa = (-(2 * (a * r[1] + 2 * m * a * a) + J) + 2j * (r[0] + b * r[1])) / J
         size = np.abs(turns).max() ** 2  # of complex turns, which rounding and the product see
         assert np.prod(turns) == pytest.approx(1, abs=1e-12 * size)
         assert turns.sum() == pytest.approx(kappa, abs=1e-12 * size)
-        counts.append(int(found.is_real.sum()))
+        counts.append(int(result.is_real.sum()))
     assert set(counts) == {1, 3}
 
 
@@ -259,26 +259,26 @@ def test_the_principal_branch_is_that_of_a_run(discrete: Discretization, r: list
 
 def test_no_principal_branch_beyond_the_fold() -> None:
     """A momentum that the principal branch does not reach has values, but no principal one."""
-    found = nh.displacements_over(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), [6.0, 5.0])
-    assert found.multiplicity.sum() == 4
-    assert found.principal is None
+    result = nh.displacements_over(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), [6.0, 5.0])
+    assert result.multiplicity.sum() == 4
+    assert result.principal is None
     with pytest.raises(ValueError, match="must have a principal displacement"):
         nh.branches(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), momentum=[6.0, 5.0])
 
 
 def test_values_all_too_far_away_are_none() -> None:
     """Doubles hold no displacement of a sleigh in space over a momentum of 1e100: none is left, all are missing."""
-    found = nh.displacements_over(_DEFINED["sleigh on SE(3)"][0], [3e99, 2e99, -4e99])
-    assert (len(found.is_real), found.real_count, found.missing, found.principal) == (0, 0, 5, None)
+    result = nh.displacements_over(_DEFINED["sleigh on SE(3)"][0], [3e99, 2e99, -4e99])
+    assert (len(result.is_real), result.real_count, result.missing, result.principal) == (0, 0, 5, None)
 
 
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
 def test_inverse_legendre(discrete: Discretization, r: list[float]) -> None:
     """The displacement of a momentum is recovered, on every branch, none of momentum zero; off the locus is refused."""
-    found, group = nh.displacements_over(discrete, r), discrete.system.group
+    result, group = nh.displacements_over(discrete, r), discrete.system.group
     still = nh.inverse_discrete_legendre(discrete, np.zeros(group.dim))
     np.testing.assert_allclose(still, group.identity, atol=1e-14)
-    for W in found.displacement[found.is_real].real:
+    for W in result.displacement[result.is_real].real:
         P = nh.discrete_legendre(discrete, W)
         np.testing.assert_allclose(nh.inverse_discrete_legendre(discrete, P), W, atol=1e-8 * np.abs(W).max())
     off = nh.discrete_legendre(discrete, W) + 0.1 * discrete.system.annihilator[0]
@@ -306,9 +306,9 @@ def test_four_real_branches() -> None:
     discrete = nh.discretize(nh.SuslovTop([[1.25, 0, -0.5], [0, 1, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
     rows = discrete.system.constraint_subspace
     W = discrete.system.group.cayley(2 * np.array([-0.25, -0.375]) @ rows)
-    found = nh.branches(discrete, displacement=W)
-    assert found.is_real.all()
-    y = found.displacement[:, :2, 2] / (1 + found.displacement[:, 2:, 2])
+    result = nh.branches(discrete, displacement=W)
+    assert result.is_real.all()
+    y = result.displacement[:, :2, 2] / (1 + result.displacement[:, 2:, 2])
     expected = [[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]]
     np.testing.assert_allclose(y, expected, rtol=0, atol=6e-9)  # eight decimals
 
@@ -316,8 +316,8 @@ def test_four_real_branches() -> None:
 @pytest.mark.parametrize(("at", "real"), [((0.1, -0.5), 3), ((-1.0, 0.1), 3), ((0.4, 0.9), 1), ((1.5, -0.5), 1)])
 def test_sum_rule_of_the_sleigh(at: tuple[float, float], real: int) -> None:
     """The angles of the three branches, complex ones included, sum to 0 mod 2 pi, their unit numbers to kappa."""
-    found = nh.displacements_over(_sleigh(0.5, 0.2), [at[0] - 0.2 * _at(*at)[1], _at(*at)[1]])
-    turns = found.displacement[:, 0, 0] + 1j * found.displacement[:, 1, 0]
+    result = nh.displacements_over(_sleigh(0.5, 0.2), [at[0] - 0.2 * _at(*at)[1], _at(*at)[1]])
+    turns = result.displacement[:, 0, 0] + 1j * result.displacement[:, 1, 0]
     assert np.prod(turns) == pytest.approx(1, abs=1e-13)
     assert turns.sum() == pytest.approx(-(2 * at[1] + 1) + 2j * at[0], abs=1e-13)
-    assert found.is_real.sum() == real
+    assert result.is_real.sum() == real

@@ -63,10 +63,10 @@ def _exact(discrete: nh.Discretization, r: list[float], W: np.ndarray) -> mpmath
 @pytest.mark.parametrize(("discrete", "r"), _ENCLOSED.values(), ids=_ENCLOSED)
 def test_enclosures_hold_the_displacements(discrete: nh.Discretization, r: list[float]) -> None:
     """Each 40-digit root of the matrix equations lies in its enclosure, which is a few roundings wide."""
-    found = nh.displacements_over(discrete, r, certify=True)
-    assert found.certified
+    result = nh.displacements_over(discrete, r, certify=True)
+    assert result.certified
     with mpmath.workdps(40):
-        for W, radius in zip(found.displacement, found.radius, strict=True):
+        for W, radius in zip(result.displacement, result.radius, strict=True):
             exact = _exact(discrete, r, W)
             missed = max(abs(exact[i, j] - complex(W[i, j])) for i in range(len(W)) for j in range(len(W)))
             assert missed <= radius
@@ -108,32 +108,32 @@ def test_random_counts_are_exact(kind: str) -> None:
 def test_a_fold_is_decided_exactly(momentum: float, multiplicity: list[int], real: int) -> None:
     """On the deltoid at t = 1 two branches are one; one rounding to either side they are two, real or complex."""
     sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
-    found = nh.displacements_over(sleigh, [momentum, -1.0], certify=True)
-    assert sorted(found.multiplicity, reverse=True) == multiplicity
-    assert found.multiplicity[found.is_real].sum() == real
+    result = nh.displacements_over(sleigh, [momentum, -1.0], certify=True)
+    assert sorted(result.multiplicity, reverse=True) == multiplicity
+    assert result.multiplicity[result.is_real].sum() == real
 
 
 def test_all_values_of_the_map_are_certified() -> None:
     """`branches` certifies the values over the momentum that it computes; they and the principal one are the same."""
     discrete, r = _ENCLOSED["top"]
-    certified, found = nh.branches(discrete, momentum=r, certify=True), nh.branches(discrete, momentum=r)
+    certified, result = nh.branches(discrete, momentum=r, certify=True), nh.branches(discrete, momentum=r)
     assert certified.certified
-    assert not found.certified
-    assert found.radius is None
-    assert certified.principal == found.principal
-    assert certified.is_real.tolist() == found.is_real.tolist()
-    assert certified.region.tolist() == found.region.tolist()
-    np.testing.assert_allclose(certified.fold_distance, found.fold_distance, rtol=1e-10)  # well away from a fold
-    missed = np.abs(certified.displacement - found.displacement).max(axis=(1, 2))
-    assert (missed <= certified.radius + 1e-13 * np.abs(found.displacement).max(axis=(1, 2))).all()
+    assert not result.certified
+    assert result.radius is None
+    assert certified.principal == result.principal
+    assert certified.is_real.tolist() == result.is_real.tolist()
+    assert certified.region.tolist() == result.region.tolist()
+    np.testing.assert_allclose(certified.fold_distance, result.fold_distance, rtol=1e-10)  # well away from a fold
+    missed = np.abs(certified.displacement - result.displacement).max(axis=(1, 2))
+    assert (missed <= certified.radius + 1e-13 * np.abs(result.displacement).max(axis=(1, 2))).all()
 
 
 def test_a_turned_frame_widens_the_radius_only() -> None:
     """In a user's frame the certificate is the same up to the rounding of the turn."""
     discrete = nh.discretize(_TURNED, 0.5)
-    certified, found = (nh.displacements_over(discrete, [1.0, 2.0], certify=choice) for choice in (True, False))
+    certified, result = (nh.displacements_over(discrete, [1.0, 2.0], certify=choice) for choice in (True, False))
     assert certified.certified
-    np.testing.assert_allclose(certified.displacement, found.displacement, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(certified.displacement, result.displacement, rtol=0, atol=1e-13)
     assert certified.radius.max() < 1e-13
 
 
@@ -141,11 +141,11 @@ def test_what_is_not_decided_is_said() -> None:
     """Where the exact method has no answer the numerical branches come with the reason, not with a certificate."""
     J = np.diag([1.0, 1.5, 2.2, 0.3])
     J[0, 3] = J[3, 0] = 0.4  # r = c along a principal axis
-    found = nh.displacements_over(nh.discretize(nh.SuslovTop(J), 1.0), [0.8, 0.0, 0.0], certify=True)
-    assert not found.certified
-    assert found.radius is None
-    assert "equals the coupling" in found.uncertified
-    assert len(found) > 0
+    result = nh.displacements_over(nh.discretize(nh.SuslovTop(J), 1.0), [0.8, 0.0, 0.0], certify=True)
+    assert not result.certified
+    assert result.radius is None
+    assert "equals the coupling" in result.uncertified
+    assert len(result) > 0
 
 
 def test_a_certificate_without_the_extra_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,10 +163,10 @@ _HUGE = fmpz(10) ** 40
 
 def _with_roots(*roots: str) -> fmpz_poly:
     """Return the polynomial with given rational roots."""
-    found = fmpz_poly([1])
+    result = fmpz_poly([1])
     for root in map(Fraction, roots):
-        found *= fmpz_poly([-root.numerator, root.denominator])
-    return found
+        result *= fmpz_poly([-root.numerator, root.denominator])
+    return result
 
 
 _POLYNOMIALS = {
@@ -281,13 +281,13 @@ def _uneven_tensor(group: AbstractMatrixGroup, rng: np.random.Generator) -> np.n
 @functools.cache
 def _bodies(index: int) -> list[tuple[nh.LLSystem, GeneralBody]]:
     """Return one body for each dimension of d, general subspaces and coordinate ones in turn."""
-    group, rng, found = GROUPS[index], np.random.default_rng(index), []
+    group, rng, result = GROUPS[index], np.random.default_rng(index), []
     for k in range(1, group.dim + 1):
         chosen = np.sort(rng.choice(group.dim, k, replace=False))
         rows = np.eye(group.dim)[chosen] if k % 2 else random_rows(group, k, rng)
         system = nh.LLSystem(group, _uneven_tensor(group, rng), rows)
-        found.append((system, make_route(nh.discretize(system, 1.0), "matrix").body))
-    return found
+        result.append((system, make_route(nh.discretize(system, 1.0), "matrix").body))
+    return result
 
 
 def _root(body: GeneralBody) -> np.ndarray:

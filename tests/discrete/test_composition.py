@@ -73,10 +73,10 @@ def test_weights_satisfy_every_order_condition(order: int) -> None:
 @pytest.mark.parametrize("order", ORDERS)
 def test_weights_are_symmetric_and_sum_to_one(order: int) -> None:
     """The weights are those of 5, 9, 15 stages, read the same in reverse, and sum to 1 within two roundings."""
-    found = weights(order)
-    assert len(found) == {4: 5, 6: 9, 8: 15}[order]
-    assert np.array_equal(found, found[::-1])
-    assert abs(math.fsum(found) - 1) <= 2 * np.finfo(float).eps
+    result = weights(order)
+    assert len(result) == {4: 5, 6: 9, 8: 15}[order]
+    assert np.array_equal(result, result[::-1])
+    assert abs(math.fsum(result) - 1) <= 2 * np.finfo(float).eps
 
 
 REFERENCE_TIME = 3.0
@@ -87,13 +87,15 @@ COUNTS = {4: (24, 36, 54), 6: (16, 24, 36), 8: (10, 14, 20)}
 @pytest.fixture(scope="module")
 def reference() -> dict[str, nh.Orbit]:
     """Return the states of the flows at the reference time: closed forms for n = 3 and the plane."""
-    found = {}
+    result = {}
     for name in ("top", "sleigh", "suslov 4", "sleigh 3"):
         system, velocity = BODIES[name]
         method = "closed_form" if name in ("top", "sleigh") else None
         tight = {"rtol": 1e-13, "atol": 1e-15}
-        found[name] = nh.flow(system, restricted_velocity=velocity, times=[0.0, REFERENCE_TIME], method=method, **tight)
-    return found
+        result[name] = nh.flow(
+            system, restricted_velocity=velocity, times=[0.0, REFERENCE_TIME], method=method, **tight
+        )
+    return result
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -263,10 +265,10 @@ def test_reversal_defect_of_whole_steps(name: str) -> None:
 
 def test_read_only_states_take_the_compiled_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """States that may not be written, as those of an orbit, are copied: no kernel is compiled for them once more."""
-    seen, each = [], _composition._each
+    calls, each = [], _composition._each
 
     def noted(*arguments: object) -> object:
-        seen.extend(x.flags.writeable for x in arguments if isinstance(x, np.ndarray))
+        calls.extend(x.flags.writeable for x in arguments if isinstance(x, np.ndarray))
         return each(*arguments)
 
     monkeypatch.setattr(_composition, "_each", noted)
@@ -278,7 +280,7 @@ def test_read_only_states_take_the_compiled_step(monkeypatch: pytest.MonkeyPatch
     assert np.array_equal(after, momenta)
     assert np.array_equal(moved, poses)
     assert not codes.any()
-    assert all(seen)
+    assert all(calls)
 
 
 ROWS = nh.LLSystem(nh.SO(3), TOP.mass_tensor, TOP.constraint_subspace)

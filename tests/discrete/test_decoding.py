@@ -48,12 +48,12 @@ def rows_of(discrete: nh.Discretization) -> nh.Orbit:
     return dataclasses.replace(good, time=time, reduced_momentum=momenta, cayley=charts, canonical_pose=poses)
 
 
-def close(found: np.ndarray, wanted: np.ndarray, size: Any = 1.0) -> None:
+def close(result: np.ndarray, wanted: np.ndarray, size: Any = 1.0) -> None:
     """Compare rows to rounding, relative to the largest number of each, or to sizes of theirs."""
     axes = tuple(range(1, wanted.ndim))
     scale = np.maximum(np.nan_to_num(np.abs(wanted).max(axis=axes, keepdims=True)), size)
-    assert (np.isnan(found) == np.isnan(wanted)).all()
-    assert not (np.abs(found - wanted) > 2e-14 * scale).any()
+    assert (np.isnan(result) == np.isnan(wanted)).all()
+    assert not (np.abs(result - wanted) > 2e-14 * scale).any()
 
 
 def test_momenta_and_poses_are_those_of_any_body(discrete: nh.Discretization) -> None:
@@ -61,8 +61,8 @@ def test_momenta_and_poses_are_those_of_any_body(discrete: nh.Discretization) ->
     orbit, plain = rows_of(discrete), BodyDecoder(discrete.system)
     assert isinstance(discrete.decoder, ClosedDecoder)
     for name in ("body_velocity", "kinetic_energy", "configuration"):
-        found, wanted = (getattr(decoder, name)(orbit) for decoder in (discrete.decoder, plain))
-        close(found, wanted, 0.0 if name != "configuration" else 1.0)
+        result, wanted = (getattr(decoder, name)(orbit) for decoder in (discrete.decoder, plain))
+        close(result, wanted, 0.0 if name != "configuration" else 1.0)
     if discrete.system.group == nh.SE(2):
         close(discrete.decoder.position(orbit), plain.position(orbit))
 
@@ -87,10 +87,10 @@ def test_tangents_are_those_of_any_map(discrete: nh.Discretization) -> None:
     """Compiled and by NumPy derivatives of steps are the same; where W + I cancels, NumPy loses its square."""
     charts = np.random.default_rng(1).normal(size=(200, 2)) / 2
     closed, plain = discrete.displacement_decoder, DisplacementDecoder(discrete)
-    found, wanted = closed.tangent(charts), plain.tangent(charts)
+    result, wanted = closed.tangent(charts), plain.tangent(charts)
     sizes = np.abs(wanted).max(axis=(1, 2), keepdims=True)  # near a fold they grow, and lose what they grow by
     lost = 1e-13 * sizes * (1 + sizes) * (1 + (charts**2).sum(axis=1)[:, None, None]) ** 2
-    assert (np.abs(found - wanted) <= lost).all()
+    assert (np.abs(result - wanted) <= lost).all()
     assert np.array_equal(closed.tangent(np.zeros((1, 2)))[0], np.eye(2))
     assert np.isnan(closed.tangent(np.full((1, 2), np.nan))).all()
 
@@ -98,8 +98,8 @@ def test_tangents_are_those_of_any_map(discrete: nh.Discretization) -> None:
 def test_tangents_near_a_half_turn() -> None:
     """Of a sleigh without arm turning and sliding part: derivatives are the identity at any angle."""
     charts = np.array([[1e2, 0.3], [1e4, -2.0], [1e6, 1e6]])
-    found = nh.discretize(nh.ChaplyginSleigh(1.0, 2.0, 0.0), 0.1).displacement_decoder.tangent(charts)
-    assert np.abs(found - np.eye(2)).max() <= 1e-9
+    result = nh.discretize(nh.ChaplyginSleigh(1.0, 2.0, 0.0), 0.1).displacement_decoder.tangent(charts)
+    assert np.abs(result - np.eye(2)).max() <= 1e-9
 
 
 @pytest.mark.parametrize("name", READINGS)

@@ -180,8 +180,8 @@ def _run(system: Any, wanted: str | None = None, steps: int = 20, order: int = 2
 def _check_same(one: nh.Orbit, other: nh.Orbit, *more: str) -> None:
     names = ("reduced_momentum", "cayley", "configuration", "momentum", "displacement", "body_velocity", "energy")
     for name in (*names, *more):
-        found, expected = getattr(one, name), getattr(other, name)
-        assert np.abs(found - expected).max() <= _CLOSE * max(1.0, np.abs(expected).max()), name
+        result, expected = getattr(one, name), getattr(other, name)
+        assert np.abs(result - expected).max() <= _CLOSE * max(1.0, np.abs(expected).max()), name
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -217,10 +217,10 @@ def test_events_within_steps(name: str) -> None:
     middle = np.median(_run(SYSTEMS[name], steps=60).configuration[:, 0, 0])
     events = [lambda orbit: orbit.configuration[:, 0, 0] - middle]
     one, other = (_run(SYSTEMS[name], wanted, events=events, steps=60) for wanted in (None, "matrix"))
-    found, expected = one.events[0], other.events[0]
-    assert len(found) > 0
-    assert np.allclose(found.time, expected.time, rtol=0, atol=1e-9)
-    assert np.allclose(found.states.configuration, expected.states.configuration, rtol=0, atol=1e-9)
+    result, expected = one.events[0], other.events[0]
+    assert len(result) > 0
+    assert np.allclose(result.time, expected.time, rtol=0, atol=1e-9)
+    assert np.allclose(result.states.configuration, expected.states.configuration, rtol=0, atol=1e-9)
 
 
 @pytest.mark.profile("routes", keep=["top", "plane sleigh"])

@@ -20,12 +20,12 @@ def test_energy_drift_over_long_runs(problem: Problem, time_step: float) -> None
     """Over 1e5 steps the energy drifts by 1e-13 of itself at most; group and constraint are kept; momenta move."""
     discrete = nh.discretize(problem.system, time_step)
     orbit = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=100_000)
-    found = nh.invariants(orbit)
-    assert found.outcome == nh.Outcome.successful
-    assert found.energy_drift <= 1e-13
-    assert found.group_residual <= 1e-14
-    assert found.constraint_residual <= 1e-13
-    assert found.reversal_defect <= 1e-12
+    result = nh.invariants(orbit)
+    assert result.outcome == nh.Outcome.successful
+    assert result.energy_drift <= 1e-13
+    assert result.group_residual <= 1e-14
+    assert result.constraint_residual <= 1e-13
+    assert result.reversal_defect <= 1e-12
     if "unbalanced" in problem.tags:
         assert np.ptp(orbit[:1000].restricted_momentum, axis=0).max() > 1e-2
         assert np.ptp(orbit[:1000].spatial_momentum, axis=0).max() > 1e-2
@@ -36,10 +36,10 @@ def test_energy_and_reversal_of_random_systems(system: AbstractLLSystem, velocit
     """Wherever the principal branch exists, at a large step, energy is exact and each step reverses."""
     orbit = nh.simulate(nh.discretize(system, 0.7), restricted_velocity=velocity, steps=60, throw=False)
     if len(orbit) > 1 and orbit.energy[0] > 1e-8:
-        found = nh.invariants(orbit)
-        assert found.energy_drift <= 1e-13
-        assert found.group_residual <= 1e-14
-        assert found.reversal_defect <= 1e-7  # near a fold the root itself is known to half the digits only
+        result = nh.invariants(orbit)
+        assert result.energy_drift <= 1e-13
+        assert result.group_residual <= 1e-14
+        assert result.reversal_defect <= 1e-7  # near a fold the root itself is known to half the digits only
 
 
 def test_a_principal_step_whose_way_back_is_not_principal() -> None:

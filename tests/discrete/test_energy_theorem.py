@@ -113,9 +113,9 @@ def test_poses_that_overflow_end_the_run(order: int) -> None:
     orbit = nh.simulate(discrete, restricted_velocity=[1.0], steps=20_000, throw=False)
     assert orbit.outcome == nh.Outcome.nonfinite
     assert 1e200 < np.abs(orbit.configuration[-1]).max() < np.inf
-    found = nh.invariants(orbit)
-    assert found.energy_drift < 1e-12
-    assert found.group_residual < 1e-11
+    result = nh.invariants(orbit)
+    assert result.energy_drift < 1e-12
+    assert result.group_residual < 1e-11
 
 
 @pytest.mark.parametrize(("group", "k"), [(nh.SO(3), 2), (nh.SO(4), 3), (nh.SO(4), 6)], ids=str)
@@ -198,11 +198,11 @@ def _orbit(group: object, k: int, constraint: str, steps: int) -> nh.Orbit:
 @pytest.mark.parametrize(("group", "k"), CASES, ids=str)
 def test_energy_of_every_dimension(group: object, k: int) -> None:
     """Random d of dimension k, 2000 steps: energy, constraint, group and reversal to rounding."""
-    found = nh.invariants(_orbit(group, k, "skew", 2000))
-    assert found.energy_drift <= 1e-12
-    assert found.constraint_residual <= 1e-12
-    assert found.group_residual <= 1e-12
-    assert found.reversal_defect <= 1e-12
+    result = nh.invariants(_orbit(group, k, "skew", 2000))
+    assert result.energy_drift <= 1e-12
+    assert result.constraint_residual <= 1e-12
+    assert result.group_residual <= 1e-12
+    assert result.reversal_defect <= 1e-12
 
 
 @pytest.mark.profile("routes", keep=["SO(4)-3"])
@@ -230,9 +230,9 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
 def test_reversal_and_reconstruction() -> None:
     """One step back returns, poses are products of displacements, and boosts keep the direction of time."""
     orbit = _run("SO(3,1)", 3, 40)
-    found = nh.invariants(orbit)
-    assert found.reversal_defect <= 1e-12
-    assert found.group_residual <= 1e-13
+    result = nh.invariants(orbit)
+    assert result.reversal_defect <= 1e-12
+    assert result.group_residual <= 1e-13
     g, W = orbit.configuration, orbit.displacement
     assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() <= 1e-13 * np.abs(g).max()
     assert np.all(W[:, 3, 3] >= 1)

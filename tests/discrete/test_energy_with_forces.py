@@ -84,8 +84,8 @@ def _linear(A: Any) -> tuple[Callable, Callable]:
 
     def slope(b: Body, g: Any, W: Any) -> Any:
         one = mp.eye(b.size)
-        seen = A.T * g * (one + (W - one) * (W + one) ** -1)
-        return mp.matrix([_trace(seen * x) for x in b.rows])
+        impulse = A.T * g * (one + (W - one) * (W + one) ** -1)
+        return mp.matrix([_trace(impulse * x) for x in b.rows])
 
     return lambda g: _trace(A.T * g), slope
 

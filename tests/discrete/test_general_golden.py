@@ -34,10 +34,10 @@ def _system(case: dict) -> AbstractSystem:
     return nh.LLSystem(_group(case["group"]), data["mass_tensor"], **rows)
 
 
-def _check(case: dict, quantity: str, found: np.ndarray) -> None:
+def _check(case: dict, quantity: str, result: np.ndarray) -> None:
     """Compare with the reference, relative to the largest entry of a quantity over the orbit."""
-    expected = numbers(case[quantity]).reshape(found.shape)
-    missed = np.abs(found - expected).max(initial=0.0) / (np.abs(expected).max(initial=0.0) or 1.0)
+    expected = numbers(case[quantity]).reshape(result.shape)
+    missed = np.abs(result - expected).max(initial=0.0) / (np.abs(expected).max(initial=0.0) or 1.0)
     assert missed <= (1e-11 if case in GENERAL else 1e-12), quantity
 
 

@@ -74,10 +74,10 @@ def test_units_of_length_do_not_matter(name: str, length: float) -> None:
     other = type(system)(nh.SE(3), J, rows) if name != "free on SE(3)" else nh.RigidBody(J, nh.SE(3))
     start = {"restricted_velocity": velocity if name != "free on SE(3)" else velocity @ coordinates}
     expected = nh.simulate(nh.discretize(system, 0.3), restricted_velocity=velocity, steps=100)
-    found = nh.simulate(nh.discretize(other, 0.3), **start, steps=100)
+    result = nh.simulate(nh.discretize(other, 0.3), **start, steps=100)
     # rows that mix lengths and angles lose the digits of the ratio
     tolerance = 1e-12 * max(1.0, length)
-    assert np.abs(np.linalg.inv(rescaled) @ found.configuration @ rescaled - expected.configuration).max() <= tolerance
+    assert np.abs(np.linalg.inv(rescaled) @ result.configuration @ rescaled - expected.configuration).max() <= tolerance
 
 
 @pytest.mark.parametrize("scale", [1e3, 1e6, 1e149])

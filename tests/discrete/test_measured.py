@@ -156,9 +156,9 @@ def _turning(angle: float) -> nh.Orbit:
 @pytest.mark.parametrize("degrees", [92.0, 180.0, 230.0])
 def test_turns_beyond_a_quarter_are_warned_of(degrees: float) -> None:
     """Beyond half a turn the velocity is another one, and nothing in the poses tells."""
-    with pytest.warns(nh.AliasingWarning, match=r"row 0 to row 1. Velocities are those of the shorter turn") as seen:
+    with pytest.warns(nh.AliasingWarning, match=r"row 0 to row 1. Velocities are those of the shorter turn") as records:
         _turning(np.radians(degrees))
-    assert seen[0].filename == __file__
+    assert records[0].filename == __file__
 
 
 def test_turns_within_a_quarter_are_not_warned_of() -> None:

@@ -31,15 +31,15 @@ def _beyond_ridge(discrete: nh.Discretization, W: np.ndarray) -> bool:
 def test_below_the_saddle_one_branch_is_inner(top: nh.SuslovTop, part: float) -> None:
     """For D >= 3|c|^2 exactly one real branch below h*, the principal one, lies before the ridge, others beyond it."""
     discrete = nh.discretize(top, 0.5)
-    found = nh.displacements_over(
+    result = nh.displacements_over(
         discrete, np.sqrt(part * nh.critical_energies(discrete).saddle) * _direction(discrete)
     )
-    real = found.displacement[found.is_real].real
+    real = result.displacement[result.is_real].real
     expected = ["outer" if _beyond_ridge(discrete, W) else "inner" for W in real]
-    assert found.region[found.is_real].tolist() == expected
+    assert result.region[result.is_real].tolist() == expected
     assert expected.count("inner") == 1
-    assert found.region[found.principal] == "inner"
-    assert set(found.region[~found.is_real]) <= {""}
+    assert result.region[result.principal] == "inner"
+    assert set(result.region[~result.is_real]) <= {""}
 
 
 def test_between_the_saddle_and_the_center() -> None:
@@ -52,10 +52,10 @@ def test_between_the_saddle_and_the_center() -> None:
         W = discrete.system.group.exp(
             2 * np.arcsin(np.linalg.norm(z)) / np.linalg.norm(z) * z @ _REGULAR.constraint_subspace
         )
-        found = nh.displacements_over(discrete, discrete.system.restrict(nh.discrete_legendre(discrete, W)))
-        between = critical.saddle < found.energy < critical.center
+        result = nh.displacements_over(discrete, discrete.system.restrict(nh.discrete_legendre(discrete, W)))
+        between = critical.saddle < result.energy < critical.center
         assert between == (part == 0.99)
-        assert ("between" in found.region) == between
+        assert ("between" in result.region) == between
 
 
 _WITHOUT = {
@@ -68,6 +68,6 @@ _WITHOUT = {
 @pytest.mark.parametrize(("system", "r"), _WITHOUT.values(), ids=_WITHOUT)
 def test_no_regions_elsewhere(system: object, r: list[float]) -> None:
     """In the other regime, in other dimensions and for sleighs there are values but no regions."""
-    found = nh.displacements_over(nh.discretize(system, 0.5), r)
-    assert found.is_real.any()
-    assert set(found.region) == {""}
+    result = nh.displacements_over(nh.discretize(system, 0.5), r)
+    assert result.is_real.any()
+    assert set(result.region) == {""}

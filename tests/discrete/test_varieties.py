@@ -34,10 +34,10 @@ def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
     """Equations f(W) = 0 of exp d in the user's frame reproduce the default, by another chart and more unknowns."""
     system, function = FUNCTIONS[name]
     start = {"restricted_velocity": (0.4, 0.9), "steps": 60}
-    found = nh.simulate(nh.discretize(system, 0.1, constraint=function), **start)
+    result = nh.simulate(nh.discretize(system, 0.1, constraint=function), **start)
     expected = nh.simulate(nh.discretize(system, 0.1), **start)
-    assert_near(found, expected, 1e-12, "configuration", "momentum")
-    assert nh.invariants(found).constraint_residual <= 1e-14
+    assert_near(result, expected, 1e-12, "configuration", "momentum")
+    assert nh.invariants(result).constraint_residual <= 1e-14
 
 
 @pytest.mark.parametrize(

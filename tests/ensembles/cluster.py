@@ -71,13 +71,13 @@ def _is_written(file: pathlib.Path) -> bool:
 def cluster(folder: pathlib.Path, workers: int = 2, **options: Any) -> Iterator[Cluster]:
     """Run a cluster; no process of it is left."""
     folder.mkdir(exist_ok=True)
-    made = Cluster(folder)
+    machines = Cluster(folder)
     try:
         for _ in range(workers):
-            made.add_worker(**options)
-        yield made
+            machines.add_worker(**options)
+        yield machines
     finally:
-        made.kill()
+        machines.kill()
 
 
 def environment(path: pathlib.Path) -> dict[str, str]:

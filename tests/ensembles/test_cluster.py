@@ -32,9 +32,9 @@ PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md")
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A cluster of a worker that nobody kills; who needs more adds them."""
-    with cluster(tmp_path_factory.mktemp("running"), workers=1) as made:
-        _wait_for_a_worker(made.address)
-        yield made
+    with cluster(tmp_path_factory.mktemp("running"), workers=1) as machines:
+        _wait_for_a_worker(machines.address)
+        yield machines
 
 
 def _wait_for_a_worker(address: str) -> None:
@@ -73,16 +73,16 @@ def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -
     running.add_worker()
     with distributed.Client(running.address, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=120)
-    found = nh.sweep(task, design, tmp_path / "a.zarr", running.address, block=8)
-    assert same(found, nh.sweep(task, design, tmp_path / "b.zarr", block=32))
+    result = nh.sweep(task, design, tmp_path / "a.zarr", running.address, block=8)
+    assert same(result, nh.sweep(task, design, tmp_path / "b.zarr", block=32))
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
 
 def test_functions_without_a_module(running: Cluster, tmp_path: Path) -> None:
     """A lambda goes to the workers with what it closes over."""
     factor = 3.0
-    found = nh.sweep(lambda block: factor * block["x"], DESIGN, tmp_path / "a.zarr", running.address)
-    assert (found["result"].values == 3.0 * found["x"].values).all()
+    result = nh.sweep(lambda block: factor * block["x"], DESIGN, tmp_path / "a.zarr", running.address)
+    assert (result["result"].values == 3.0 * result["x"].values).all()
 
 
 @pytest.mark.profile("faults", instead="test_workers_without_the_store")
@@ -146,9 +146,9 @@ def test_the_page(running: Cluster, tmp_path: Path) -> None:
     exec(run, names)  # noqa: S102
     assert nh.load_sweep(tmp_path / "a.zarr").sizes["member"] == 100
     exec(groups.replace("10_000", "10"), names)  # noqa: S102
-    found = nh.sweep(names["headings"], nh.RandomDesign(3, {"a": nh.Uniform(0.1, 1.0)}), tmp_path / "b.zarr", block=2)
-    assert found["headings"].dims == ("member", "bin")
-    assert (found["headings"].sum("bin") == 10).all()
+    result = nh.sweep(names["headings"], nh.RandomDesign(3, {"a": nh.Uniform(0.1, 1.0)}), tmp_path / "b.zarr", block=2)
+    assert result["headings"].dims == ("member", "bin")
+    assert (result["headings"].sum("bin") == 10).all()
 
 
 def test_a_number_of_workers_is_refused(tmp_path: Path) -> None:
@@ -167,12 +167,12 @@ def _answer(server: socket.socket) -> None:
 @pytest.mark.parametrize("nanny", [False, True], ids=["alone", "nanny"])
 def test_a_killed_worker_is_replaced(nanny: bool, tmp_path: Path, undisturbed: xarray.Dataset) -> None:
     """The sweep waits while there is no worker, and ends with the same bits on the one that comes next."""
-    with cluster(tmp_path / "cluster", workers=1, nanny=nanny) as made:
-        swept = _in_background(made.address, tmp_path / "a.zarr")
+    with cluster(tmp_path / "cluster", workers=1, nanny=nanny) as machines:
+        swept = _in_background(machines.address, tmp_path / "a.zarr")
         _some_blocks(tmp_path / "a.zarr", random.Random(nanny))  # noqa: S311
         kill(int(done(tmp_path / "a.zarr")[0].rpartition(":")[2]), signal.SIGKILL)  # the writer of some block
         if not nanny:
-            made.add_worker()
+            machines.add_worker()
         assert same(swept.result(timeout=120), undisturbed)
     assert len(set(done(tmp_path / "a.zarr"))) == 2
 
@@ -197,10 +197,10 @@ def test_a_killed_cluster_is_told(
 ) -> None:
     """When the scheduler is gone the client says where the sweep stands, and threads end it with the same bits."""
     monkeypatch.setattr(_scheduling, "_CONNECT", 1)
-    with cluster(tmp_path / "cluster", workers=1) as made:
-        swept = _in_background(made.address, tmp_path / "a.zarr")
+    with cluster(tmp_path / "cluster", workers=1) as machines:
+        swept = _in_background(machines.address, tmp_path / "a.zarr")
         _some_blocks(tmp_path / "a.zarr", random.Random(2))  # noqa: S311
-        strike(made)
+        strike(machines)
         with pytest.raises(OSError, match=r"to the scheduler at tcp.* was lost. The sweep stands at \d+ of 240"):
             swept.result(timeout=120)
     assert same(nh.resume(tmp_path / "a.zarr", trust=True), undisturbed)
@@ -220,10 +220,10 @@ def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.M
     """A sweep for which there are no workers says what it waits for."""
     monkeypatch.setattr(_scheduling, "_PATIENCE", 0.1)
     with (
-        cluster(tmp_path / "cluster", workers=0) as made,
-        pytest.raises(RuntimeWarning, match=f"has no workers. The sweep waits for some: dask worker {made.address}"),
+        cluster(tmp_path / "cluster", workers=0) as alone,
+        pytest.raises(RuntimeWarning, match=f"has no workers. The sweep waits for some: dask worker {alone.address}"),
     ):
-        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", made.address)
+        nh.sweep(slow, DESIGN, tmp_path / "a.zarr", alone.address)
 
 
 def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,8 +239,8 @@ def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_the_users_client(running: Cluster, undisturbed: xarray.Dataset, tmp_path: Path) -> None:
     """A client may be passed: the result is that of threads, and the client stays open; a closed one is refused."""
     with distributed.Client(running.address, set_as_default=False) as client:
-        found = nh.sweep(slow, DESIGN, tmp_path / "a.zarr", client, block=BLOCK).load()
-        assert found.equals(undisturbed)
+        result = nh.sweep(slow, DESIGN, tmp_path / "a.zarr", client, block=BLOCK).load()
+        assert result.equals(undisturbed)
         assert client.status == "running"
     with pytest.raises(ValueError, match="must be a client that is connected"):
         nh.sweep(slow, DESIGN, tmp_path / "b.zarr", client)

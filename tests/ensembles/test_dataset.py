@@ -244,11 +244,11 @@ test_bad_arguments_are_refused = refusals(
 
 def test_a_definition_that_changes_gets_another_version() -> None:
     """Versions and digests of all definitions are those on record: a changed one must raise its version there."""
-    found = {
+    result = {
         name: [each.version, hashlib.sha256(repr(each._replace(title="")).encode()).hexdigest()[:16]]
         for name, each in DEFINITIONS.items()
     }
-    assert found == json.loads(DIGESTS.read_text())
+    assert result == json.loads(DIGESTS.read_text())
 
 
 def test_the_card_says_how_to_load_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -42,11 +42,11 @@ def _assert_mean(samples: np.ndarray, mean: Any) -> None:
 def test_members_of_a_grid_are_all_combinations() -> None:
     """Members are numbered as nested loops run, the last axis innermost, also where values are vectors."""
     axes = {"a": [1.0, 2.0], "start": [[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]], "b": [7.0, 8.0]}
-    found = nh.Grid(axes).values(0, 12)
+    result = nh.Grid(axes).values(0, 12)
     for member, (a, start, b) in enumerate(itertools.product(*axes.values())):
-        assert found["a"][member] == a
-        assert found["start"][member].tolist() == start
-        assert found["b"][member] == b
+        assert result["a"][member] == a
+        assert result["start"][member].tolist() == start
+        assert result["b"][member] == b
 
 
 def test_a_large_grid_costs_nothing() -> None:
@@ -161,9 +161,9 @@ def test_choices_are_the_values() -> None:
     """All values are chosen, nothing else is, and each as often as the others."""
     values = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
     draws = _drawn(nh.Choice(values))
-    found = (draws[:, None] == values).all(axis=2)
-    assert (found.sum(axis=1) == 1).all()
-    _assert_mean(found, 1 / 3)
+    result = (draws[:, None] == values).all(axis=2)
+    assert (result.sum(axis=1) == 1).all()
+    _assert_mean(result, 1 / 3)
 
 
 def test_blocks_know_their_members() -> None:
@@ -184,14 +184,14 @@ def test_blocks_know_their_members() -> None:
 def test_every_member_is_in_one_block(sizes: tuple[int, ...], block: int) -> None:
     """Blocks cover every member once, hold at most this many, and their members follow each other in the arrays."""
     layout = layout_of(sizes, block)
-    numbers, seen = np.arange(np.prod(sizes)).reshape(sizes), np.zeros(sizes, dtype=int)
+    numbers, counts = np.arange(np.prod(sizes)).reshape(sizes), np.zeros(sizes, dtype=int)
     for number in range(layout.blocks):
         piece = layout.piece(number)
         assert piece.number == number
         assert piece.count <= block
         assert numbers[piece.place].ravel().tolist() == list(range(piece.first, piece.first + piece.count))
-        seen[piece.place] += 1
-    assert (seen == 1).all()
+        counts[piece.place] += 1
+    assert (counts == 1).all()
 
 
 @pytest.mark.parametrize("block", [1, 100, 4096])

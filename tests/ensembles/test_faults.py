@@ -54,8 +54,8 @@ def test_killed_worker_is_told(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="A worker process was killed"):
         nh.sweep(faults.dying, faults.DESIGN, tmp_path / "run.zarr", "processes", block=1, workers=2)
     assert standing_of(tmp_path / "run.zarr").owner is None
-    found = nh.resume(tmp_path / "run.zarr", task=faults.dying, scheduler="synchronous").load()
-    assert same(found, swept(tmp_path / "whole.zarr"))
+    result = nh.resume(tmp_path / "run.zarr", task=faults.dying, scheduler="synchronous").load()
+    assert same(result, swept(tmp_path / "whole.zarr"))
 
 
 @pytest.mark.profile("faults", instead="test_interruption_after_each_block")
@@ -258,10 +258,10 @@ def test_metadata_of_another_array_are_refused(tmp_path: Path) -> None:
     assert_refused(path, r"hold the array \w+ of its description", nh.load_sweep, resumed)
     swap(path, "total/zarr.json", "outcome/zarr.json")
     for name in ("outcome", "x"):
-        for told in ("a text", {"scale_factor": 2.0}):
+        for report in ("a text", {"scale_factor": 2.0}):
             file = path / name / "zarr.json"
             sound = file.read_text()
-            file.write_text(json.dumps(json.loads(sound) | {"attributes": told}))
+            file.write_text(json.dumps(json.loads(sound) | {"attributes": report}))
             assert_refused(path, f"hold the (array|axis) {name}", nh.load_sweep)
             file.write_text(sound)
 

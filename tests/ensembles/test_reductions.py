@@ -46,26 +46,26 @@ def _early(every: int | None) -> nh.Ensemble:
 @pytest.mark.parametrize("every", [None, 1, 20])
 def test_final_state_is_the_last_one(discrete: nh.Discretization, every: int | None) -> None:
     """The final state is that of `simulate`, to the rounding of 60 products; every step is counted."""
-    found = _reduced("final_state", _batch(discrete, every=every))
+    result = _reduced("final_state", _batch(discrete, every=every))
     for member in range(3):
         orbit = _orbit(discrete, member)
         for name, wanted in (("momentum", orbit.restricted_momentum), ("energy", orbit.energy), ("pose", orbit.pose)):
             assert wanted is not None
-            assert np.abs(found[f"final_{name}"][member] - wanted[-1]).max() < 1e-13, name
-    assert found["steps_done"].tolist() == [60] * 3
+            assert np.abs(result[f"final_{name}"][member] - wanted[-1]).max() < 1e-13, name
+    assert result["steps_done"].tolist() == [60] * 3
 
 
 @pytest.mark.parametrize("every", [None, 1])
 def test_final_state_of_members_that_end_early(every: int | None) -> None:
     """The final state of a member that ends early is its last good one; of one that does not start it is NaN."""
-    found = _reduced("final_state", _early(every))
+    result = _reduced("final_state", _early(every))
     whole = nh.simulate(FOLDING, momentum=FOLDS, steps=400, throw=False)
     done = len(whole) - 1
     assert 1 < done < 399
-    assert found["steps_done"].tolist() == [400, done, 0]
-    assert np.abs(found["final_momentum"][1] - whole.restricted_momentum[-1]).max() < 1e-13
-    assert np.isnan(found["final_momentum"][2]).all()
-    assert np.isnan(found["final_energy"][2])
+    assert result["steps_done"].tolist() == [400, done, 0]
+    assert np.abs(result["final_momentum"][1] - whole.restricted_momentum[-1]).max() < 1e-13
+    assert np.isnan(result["final_momentum"][2]).all()
+    assert np.isnan(result["final_energy"][2])
 
 
 @pytest.mark.parametrize("every", [None, 1])
@@ -138,12 +138,12 @@ def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, star
     """The exponent is the largest growth of small differences of first momenta over all steps."""
     steps = 12
     batch = nh.ensemble(discrete, restricted_velocity=starts, steps=steps, save_every=1)
-    found = _reduced("lyapunov", batch)["lyapunov"]
+    result = _reduced("lyapunov", batch)["lyapunov"]
 
     def last(momentum: np.ndarray) -> np.ndarray:
         return nh.simulate(discrete, momentum=momentum, steps=steps, reconstruct=False).restricted_momentum[-1]
 
-    for member, exponent in enumerate(found):
+    for member, exponent in enumerate(result):
         slopes = derivatives(last, batch.restricted_momentum[member, 0], 1e-3)
         wanted = np.log(np.linalg.norm(slopes, 2)) / (steps * discrete.time_step)
         assert abs(exponent - wanted) < 1e-8  # differences: 1e-10 of the slopes, divided by a time of about one
@@ -151,11 +151,11 @@ def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, star
 
 def _assert_tangents(batch: nh.Ensemble) -> None:
     """Compare derivatives of steps in closed form with those by the definition."""
-    found = tangents(batch.members, batch.reduced_momentum, batch.cayley)
+    result = tangents(batch.members, batch.reduced_momentum, batch.cayley)
     for member, done in enumerate(batch.steps_done):
         assert done > 0
         wanted = step_jacobians(batch.members.of(member), batch.orbit(member).displacement)
-        assert np.abs(found[member, : done + 1] - wanted).max() < 1e-12 * np.abs(wanted).max()
+        assert np.abs(result[member, : done + 1] - wanted).max() < 1e-12 * np.abs(wanted).max()
 
 
 @pytest.mark.profile("routes", keep=["*-top"])
@@ -242,24 +242,24 @@ def _turns(path: Path, design: nh.Grid, steps: int, start: float = START) -> xar
 @pytest.mark.parametrize("time_step", [0.2, 1.5])
 def test_deviation_of_one_orbit(time_step: float, tmp_path: Path) -> None:
     """The reduction is the one of `asymptotics`, which follows an orbit of `simulate` to both ends."""
-    found = _turns(tmp_path, nh.Grid({"inertia": [0.7], "time_step": [time_step]}), 1500)
+    result = _turns(tmp_path, nh.Grid({"inertia": [0.7], "time_step": [time_step]}), 1500)
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 0.7, 1.0), time_step)
     orbit = nh.simulate(discrete, restricted_velocity=(START, -1.0), steps=10)
     discrete_turn, turn = (nh.asymptotics(of).heading_turn for of in (orbit, discrete.system))
     assert discrete_turn is not None
     assert turn is not None
-    assert abs(found["turning_deviation"].values.item() - (1 - discrete_turn / turn)) < 2 * START
-    assert abs(found["heading_turn"].values.item() - discrete_turn) < 10 * START
+    assert abs(result["turning_deviation"].values.item() - (1 - discrete_turn / turn)) < 2 * START
+    assert abs(result["heading_turn"].values.item() - discrete_turn) < 10 * START
 
 
 def test_every_discrete_sleigh_turns_less(tmp_path: Path) -> None:
     """No member turns as far as its flow, in whichever sense it turns: the deviation is positive."""
     design = nh.Grid({"inertia": np.geomspace(0.1, 10, 12), "time_step": np.linspace(0.3, 4, 12)})
-    found = _turns(tmp_path, design, 1500)
-    good = found["outcome"].values == 0
+    result = _turns(tmp_path, design, 1500)
+    good = result["outcome"].values == 0
     assert 50 < good.sum() < good.size
-    assert (found["turning_deviation"].values[good] > 0).all()
-    assert np.isnan(found["turning_deviation"].values[~good]).all()
+    assert (result["turning_deviation"].values[good] > 0).all()
+    assert np.isnan(result["turning_deviation"].values[~good]).all()
 
 
 def test_turn_of_each_step() -> None:

@@ -71,10 +71,10 @@ def test_read_only_folder_is_refused() -> None:
             words = r"denied\. Nothing at this path was changed.*new\.zarr"
             assert_refused(folder / "new.zarr", words, swept, kind=PermissionError)
             assert_refused(folder / "run.zarr", "denied", resumed, kind=PermissionError)
-            found = nh.load_sweep(folder / "run.zarr").load()
+            result = nh.load_sweep(folder / "run.zarr").load()
         finally:
             os.seteuid(0)
-        assert same(found, whole)
+        assert same(result, whole)
         assert [path.name for path in folder.iterdir()] == ["run.zarr"]
 
 
@@ -117,7 +117,7 @@ RANDOM = nh.RandomDesign(6, {"x": nh.Normal()}, rng=1)
 
 
 @pytest.mark.parametrize(
-    ("made", "mistake", "match"),
+    ("thing", "mistake", "match"),
     [
         (swept, lambda path: nh.resume(path, task=noisy), r'name is "ensembles.faults:noisy" instead of ".*le"'),
         (swept, lambda p: nh.sweep(simple, nh.Grid(DESIGN.axes, rng=2), p, resume=True), r"seed is 2 instead of 1"),
@@ -132,9 +132,9 @@ RANDOM = nh.RandomDesign(6, {"x": nh.Normal()}, rng=1)
         (Path.mkdir, nh.resume, "must be a store of a run or a sweep"),
     ],
 )
-def test_wrong_stores_are_refused(made: Callable[..., Any], mistake: Callable, match: str, tmp_path: Path) -> None:
+def test_wrong_stores_are_refused(thing: Callable[..., Any], mistake: Callable, match: str, tmp_path: Path) -> None:
     """What does not belong together is refused, with the difference named."""
-    made(tmp_path / "run.zarr")
+    thing(tmp_path / "run.zarr")
     assert_refused(tmp_path / "run.zarr", match, mistake)
 
 
@@ -209,10 +209,10 @@ def test_plane(tmp_path: Path, name: str) -> None:
     assert [row["member"] for row in rows] == ["0", "1", "2", "3", "4", "5"]
     system = {"mass": 1.0, "inertia": 1.0, "a": 0.5, "b": 0.2, name: 0.3}
     orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(**system), 0.2), restricted_velocity=(1.0, 0.5), steps=20)
-    found = [float(rows[4][column]) for column in ("t", "x", "y", "theta")]
+    result = [float(rows[4][column]) for column in ("t", "x", "y", "theta")]
     g = orbit.configuration[-1]
     wanted = [orbit.time[-1], *orbit.position[-1], np.arctan2(g[1, 0], g[0, 0])]
-    assert np.abs(np.subtract(found, wanted)).max() < 1e-13  # 20 products of numbers of size one
+    assert np.abs(np.subtract(result, wanted)).max() < 1e-13  # 20 products of numbers of size one
 
 
 def test_reductions_need_not_be_found(tmp_path: Path) -> None:
@@ -226,17 +226,17 @@ def test_reductions_need_not_be_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("task", "told"),
+    ("task", "message"),
     [
         (lambda block: {"final_pose": block["a"]}, r"`sweep_to_csv\(store=\.\.\.\)` must hold poses"),
         (_task(OFFSET, reconstruct=False), "Keep 'final_state' with reconstruct=True"),
     ],
     ids=["function", "no poses"],
 )
-def test_refused_without_poses(task: Any, told: str, tmp_path: Path) -> None:
+def test_refused_without_poses(task: Any, message: str, tmp_path: Path) -> None:
     """A sweep that kept no poses says what to keep; what a function calls a pose is of no known system."""
     nh.sweep(task, nh.Grid({"a": [0.1, 0.3]}), tmp_path / "s.zarr")
-    assert_refused(tmp_path / "s.zarr", told, _export)
+    assert_refused(tmp_path / "s.zarr", message, _export)
     assert [path.name for path in tmp_path.iterdir()] == ["s.zarr"]
 
 
@@ -246,8 +246,8 @@ def test_refused_without_the_system_or_when_damaged(tmp_path: Path) -> None:
     nh.sweep(_task(OFFSET), nh.Grid({"a": [0.1, 0.3]}), store)
     damage(store / "final_pose" / "c" / "0" / "0", "cut")
     assert_refused(store, "chunk c/0/0 of the array final_pose", _export)
-    told = json.loads(read_attributes(store, "nonholo.sweep")["sweep"])
-    told["task"]["motion"] = json.dumps(json.loads(told["task"]["motion"]) | {"difference": "callable"})
-    edit_attributes(store, {"sweep": json.dumps(told)})
+    report = json.loads(read_attributes(store, "nonholo.sweep")["sweep"])
+    report["task"]["motion"] = json.dumps(json.loads(report["task"]["motion"]) | {"difference": "callable"})
+    edit_attributes(store, {"sweep": json.dumps(report)})
     assert_refused(store, r"hold its system as data\. Got .*one whose difference is a callable\.", _export)
     assert list(tmp_path.iterdir()) == [store]

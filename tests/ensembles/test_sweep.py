@@ -31,35 +31,35 @@ def test_result_is_labeled(tmp_path: Path) -> None:
 
     def task(block: nh.MemberBlock) -> dict[str, Any]:
         products = block["x"][:, None] * np.arange(5.0)
-        told = {"long_name": "products", "units": "m"}
-        return {"sum": block["x"] + block["y"], "products": (("factor",), products, told), "plain": products}
+        report = {"long_name": "products", "units": "m"}
+        return {"sum": block["x"] + block["y"], "products": (("factor",), products, report), "plain": products}
 
-    found = _swept(task, tmp_path)
-    assert found["sum"].dims == ("x", "y")
-    assert np.array_equal(found["sum"], np.add.outer([1.0, 2.0, 3.0], [10.0, 20.0, 30.0, 40.0]))
-    assert found["products"].dims == ("x", "y", "factor")
-    assert float(found["products"].sel(x=2.0, y=30.0).isel(factor=4)) == 8.0
-    assert (found["products"].attrs["long_name"], found["products"].attrs["units"]) == ("products", "m")
-    assert found["plain"].dims == ("x", "y", "plain_1")
-    assert (found["outcome"] == 0).all()
+    result = _swept(task, tmp_path)
+    assert result["sum"].dims == ("x", "y")
+    assert np.array_equal(result["sum"], np.add.outer([1.0, 2.0, 3.0], [10.0, 20.0, 30.0, 40.0]))
+    assert result["products"].dims == ("x", "y", "factor")
+    assert float(result["products"].sel(x=2.0, y=30.0).isel(factor=4)) == 8.0
+    assert (result["products"].attrs["long_name"], result["products"].attrs["units"]) == ("products", "m")
+    assert result["plain"].dims == ("x", "y", "plain_1")
+    assert (result["outcome"] == 0).all()
 
 
 def test_draws_are_kept_beside_the_result(tmp_path: Path) -> None:
     """What a random design drew is in the store, bit by bit, with dimensions of its own."""
-    found = _swept(lambda block: {"trace": np.trace(block["mass_tensor"], axis1=1, axis2=2)}, tmp_path, FEW, block=7)
+    result = _swept(lambda block: {"trace": np.trace(block["mass_tensor"], axis1=1, axis2=2)}, tmp_path, FEW, block=7)
     drawn = FEW.values(0, 50)
-    assert found["mass_tensor"].dims == ("member", "mass_tensor_1", "mass_tensor_2")
+    assert result["mass_tensor"].dims == ("member", "mass_tensor_1", "mass_tensor_2")
     for name in ("mass_tensor", "restricted_velocity"):
-        assert found[name].values.tobytes() == drawn[name].tobytes()
-    assert np.array_equal(found["trace"], np.trace(drawn["mass_tensor"], axis1=1, axis2=2))
+        assert result[name].values.tobytes() == drawn[name].tobytes()
+    assert np.array_equal(result["trace"], np.trace(drawn["mass_tensor"], axis1=1, axis2=2))
 
 
 def test_axes_of_vectors_are_data(tmp_path: Path) -> None:
     """Vectors along an axis have a number as their place, and stand in the result."""
-    found = _swept(lambda block: block["start"][:, 1], tmp_path, nh.Grid({"start": [[1.0, 2.0], [3.0, 4.0]]}))
-    assert found["result"].dims == ("start_number",)
-    assert found["start"].dims == ("start_number", "start_1")
-    assert found["result"].values.tolist() == found["start"].values[:, 1].tolist()
+    result = _swept(lambda block: block["start"][:, 1], tmp_path, nh.Grid({"start": [[1.0, 2.0], [3.0, 4.0]]}))
+    assert result["result"].dims == ("start_number",)
+    assert result["start"].dims == ("start_number", "start_1")
+    assert result["result"].values.tolist() == result["start"].values[:, 1].tolist()
 
 
 WIDEST = {"b": np.int8, "i": np.int64, "u": np.uint64, "f": np.float64, "c": np.complex128}
@@ -75,11 +75,11 @@ def test_types_of_numbers(kind: type, tmp_path: Path) -> None:
             raise RuntimeError("twenty")
         return (block["x"] - 1).astype(kind)
 
-    found, letter = _swept(task, tmp_path)["result"], np.dtype(kind).kind
-    assert found.dtype == WIDEST[letter]
+    result, letter = _swept(task, tmp_path)["result"], np.dtype(kind).kind
+    assert result.dtype == WIDEST[letter]
     wanted = np.array([0, 1, 2]).astype(kind)
-    assert np.array_equal(found.values[:, [0, 2, 3]], np.repeat(wanted[:, None], 3, axis=1))
-    np.testing.assert_array_equal(found.values[:, 1].real, ABSENT_OF[letter])
+    assert np.array_equal(result.values[:, [0, 2, 3]], np.repeat(wanted[:, None], 3, axis=1))
+    np.testing.assert_array_equal(result.values[:, 1].real, ABSENT_OF[letter])
 
 
 def _raising(block: nh.MemberBlock) -> dict[str, Any]:
@@ -97,14 +97,14 @@ def _calm(block: nh.MemberBlock) -> dict[str, Any]:
 @pytest.mark.parametrize("block", [1, 3, 5, 12])
 def test_members_that_raise_are_recorded(block: int, tmp_path: Path) -> None:
     """Members for which the task raises have no numbers, outcome 100 and a message; the others have the same bits."""
-    found = _swept(_raising, tmp_path, block=block)
+    result = _swept(_raising, tmp_path, block=block)
     calm = nh.sweep(_calm, GRID, tmp_path / "calm.zarr").load()
     bad = np.arange(12).reshape(3, 4) % 5 == 3
-    assert np.array_equal(found["outcome"], np.where(bad, RAISED, 0))
+    assert np.array_equal(result["outcome"], np.where(bad, RAISED, 0))
     for name in ("value", "noise", "count"):
-        assert found[name].values[~bad].tobytes() == calm[name].values[~bad].tobytes()
-    assert np.isnan(found["value"].values[bad]).all()
-    assert np.isnan(found["noise"].values[bad]).all()
+        assert result[name].values[~bad].tobytes() == calm[name].values[~bad].tobytes()
+    assert np.isnan(result["value"].values[bad]).all()
+    assert np.isnan(result["noise"].values[bad]).all()
     now = standing_of(tmp_path / "run.zarr")
     assert sorted(now.messages) == [(3, "ZeroDivisionError: at 3"), (8, "ZeroDivisionError: at 8")]
     assert (now.done, now.failure_count, now.outcomes) == (12, 2, {"successful": 10, "raised": 2})
@@ -129,24 +129,24 @@ def test_one_good_member_is_enough_to_begin(tmp_path: Path) -> None:
             raise ValueError("too early")
         return block["x"]
 
-    found = _swept(late, tmp_path)
-    assert np.array_equal(found["outcome"].values.ravel() == RAISED, np.arange(12) < 9)
-    assert (found["result"].values.ravel()[9:] == 3.0).all()
+    result = _swept(late, tmp_path)
+    assert np.array_equal(result["outcome"].values.ravel() == RAISED, np.arange(12) < 9)
+    assert (result["result"].values.ravel()[9:] == 3.0).all()
 
 
 def test_own_outcomes_are_kept(tmp_path: Path) -> None:
     """A task may say how its members ended; the codes are counted by name where they have one."""
     codes = np.array([0, 1, 5, 77, -1, 0, 0, 0, 0, 0, 0, 0])
-    found = _swept(lambda block: {"outcome": codes[block.index]}, tmp_path)
-    assert np.array_equal(found["outcome"].values.ravel(), codes)
+    result = _swept(lambda block: {"outcome": codes[block.index]}, tmp_path)
+    assert np.array_equal(result["outcome"].values.ravel(), codes)
     outcomes = standing_of(tmp_path / "run.zarr").outcomes
     assert outcomes == {"successful": 8, "no_real_branch": 1, "nonfinite": 1, "77": 1, "-1": 1}
 
 
 def test_outcomes_are_explained(tmp_path: Path) -> None:
     """The codes of outcomes and their meanings are attributes of the array, as CF conventions write flags."""
-    told = _swept(_calm, tmp_path)["outcome"].attrs
-    meanings = dict(zip(told["flag_values"], told["flag_meanings"].split(), strict=True))
+    report = _swept(_calm, tmp_path)["outcome"].attrs
+    meanings = dict(zip(report["flag_values"], report["flag_meanings"].split(), strict=True))
     assert meanings == {ABSENT: "absent", **{int(code): code.name for code in nh.Outcome}, RAISED: "raised"}
 
 
@@ -154,9 +154,9 @@ def test_members_to_come_are_absent(tmp_path: Path) -> None:
     """In an unfinished store members that are not done are NaN, with the outcome that says so."""
     with stopped_at(2):
         _swept(lambda block: block["x"], tmp_path, block=4)
-    with xarray.open_zarr(tmp_path / "run.zarr", chunks=None, consolidated=False) as found:
-        assert (found["outcome"].values[2] == ABSENT).all()
-        assert np.isnan(found["result"].values[2]).all()
+    with xarray.open_zarr(tmp_path / "run.zarr", chunks=None, consolidated=False) as result:
+        assert (result["outcome"].values[2] == ABSENT).all()
+        assert np.isnan(result["result"].values[2]).all()
 
 
 def _failing(later: Callable[[nh.MemberBlock], Any]) -> Callable[[nh.MemberBlock], Any]:
@@ -183,12 +183,12 @@ def _failing(later: Callable[[nh.MemberBlock], Any]) -> Callable[[nh.MemberBlock
 )
 def test_changing_results_are_refused(later: Callable[[nh.MemberBlock], Any], match: str, tmp_path: Path) -> None:
     """A member for which a task returns something else is recorded with the difference, the others are done."""
-    found = _swept(_failing(later), tmp_path, block=4)
-    assert np.flatnonzero(found["outcome"].values.ravel() == RAISED).tolist() == [5]
-    ((member, told),) = standing_of(tmp_path / "run.zarr").messages
+    result = _swept(_failing(later), tmp_path, block=4)
+    assert np.flatnonzero(result["outcome"].values.ravel() == RAISED).tolist() == [5]
+    ((member, report),) = standing_of(tmp_path / "run.zarr").messages
     assert member == 5
     with pytest.raises(ValueError, match=match):
-        raise ValueError(told)
+        raise ValueError(report)
 
 
 # What cannot be written, or not be opened by xarray, is refused before anything is computed.
@@ -258,12 +258,12 @@ def test_loaded_sweep_is_the_sweep(tmp_path: Path) -> None:
     """What `sweep` returned, `load_sweep` and plain xarray open; nothing warns, and the scenario is kept."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = _swept(_calm, tmp_path, scenario="[design]")
+        result = _swept(_calm, tmp_path, scenario="[design]")
         path = tmp_path / "run.zarr"
         with xarray.open_zarr(path, chunks=None) as opened:
-            assert same(opened.load(), found)
-        assert same(nh.load_sweep(path).load(), found)
-    assert found.attrs["scenario"] == "[design]"
+            assert same(opened.load(), result)
+        assert same(nh.load_sweep(path).load(), result)
+    assert result.attrs["scenario"] == "[design]"
 
 
 def test_resumed_sweep_keeps_its_blocks(tmp_path: Path) -> None:
@@ -287,9 +287,9 @@ def test_two_sweeps_at_a_time(tmp_path: Path) -> None:
     """Sweeps in two threads of one process do not hear of each other's blocks."""
     with ThreadPoolExecutor(2) as pool:
         stores = [tmp_path / "one.zarr", tmp_path / "two.zarr"]
-        found = list(pool.map(lambda store: nh.sweep(_calm, GRID, store, block=1, workers=2).load(), stores))
+        result = list(pool.map(lambda store: nh.sweep(_calm, GRID, store, block=1, workers=2).load(), stores))
     wanted = _swept(_calm, tmp_path)
-    assert all(same(each, wanted) for each in found)
+    assert all(same(each, wanted) for each in result)
 
 
 def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -348,15 +348,15 @@ def test_a_growth_that_was_killed_continues(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("design", "members", "told"),
+    ("design", "members", "message"),
     [
         (GRID, 20, "must come with a random design"),
         (FEW, 49, "must not be below the 50 members of the design. Got 49"),
         (FEW, 1.5, r"resume\(members=...\)"),
     ],
 )
-def test_growth_that_is_refused(design: Any, members: Any, told: str, tmp_path: Path) -> None:
+def test_growth_that_is_refused(design: Any, members: Any, message: str, tmp_path: Path) -> None:
     """A grid has no more members, a random design never fewer."""
     _swept(_numbers, tmp_path, design)
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         nh.resume(tmp_path / "run.zarr", task=_numbers, members=members)

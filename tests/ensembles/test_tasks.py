@@ -26,34 +26,34 @@ def _task(discrete: nh.Discretization = SLEIGH, **options: Any) -> nh.EnsembleTa
 
 
 def _called(task: nh.EnsembleTask, design: Any) -> dict[str, Any]:
-    found = task(block_of(design, 0, design.members))
-    return {name: entry[1] if isinstance(entry, tuple) else entry for name, entry in found.items()}
+    result = task(block_of(design, 0, design.members))
+    return {name: entry[1] if isinstance(entry, tuple) else entry for name, entry in result.items()}
 
 
-def _assert_is_ensemble(found: dict[str, Any], batch: nh.Ensemble) -> None:
-    assert found["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+def _assert_is_ensemble(result: dict[str, Any], batch: nh.Ensemble) -> None:
+    assert result["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
     assert batch.pose is not None
-    assert found["final_pose"].tobytes() == batch.pose[:, -1].tobytes()
-    assert found["outcome"].tolist() == batch.outcome.tolist()
+    assert result["final_pose"].tobytes() == batch.pose[:, -1].tobytes()
+    assert result["outcome"].tolist() == batch.outcome.tolist()
 
 
 @pytest.mark.parametrize("start", ["restricted_velocity", "momentum"])
 def test_members_are_those_of_ensemble(start: str) -> None:
     """Parameters, time steps and components of a start by name are the members of `ensemble`, bit by bit."""
     design = nh.Grid({"a": [0.1, 0.5], "time_step": [0.05, 0.1, 0.2], f"{start}[1]": [-1.0, 0.4]})
-    found = _called(_task(**{start: (1.0, 7.0)}), design)
+    result = _called(_task(**{start: (1.0, 7.0)}), design)
     values = design.values(0, 12)
     rows = np.stack([np.ones(12), values[f"{start}_1"]], axis=1)
     parameters = {name: values[name] for name in ("a", "time_step")}
-    _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, parameters=parameters, **{start: rows}))
+    _assert_is_ensemble(result, nh.ensemble(SLEIGH, steps=50, parameters=parameters, **{start: rows}))
 
 
 @pytest.mark.parametrize("start", ["body_velocity", "restricted_velocity", "momentum"])
 def test_whole_starts_of_a_design_replace_that_of_the_task(start: str) -> None:
     """A start of the design is used instead of that of the task, whatever that was."""
     rows = [[*row, 0.0] for row in STARTS] if start == "body_velocity" else STARTS
-    found = _called(_task(restricted_velocity=(9.0, 9.0)), nh.Grid({start: rows}))
-    _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, **{start: rows}))
+    result = _called(_task(restricted_velocity=(9.0, 9.0)), nh.Grid({start: rows}))
+    _assert_is_ensemble(result, nh.ensemble(SLEIGH, steps=50, **{start: rows}))
 
 
 def _path_length(batch: nh.Ensemble) -> dict[str, Any]:
@@ -63,16 +63,16 @@ def _path_length(batch: nh.Ensemble) -> dict[str, Any]:
 def test_functions_of_an_ensemble() -> None:
     """A custom reduction sees the states that are saved, beside built-in ones."""
     task = _task(restricted_velocity=(1.0, 0.2), save_every=10, reductions=[_path_length, "final_state"])
-    found = _called(task, nh.Grid({"a": [0.1, 0.5]}))
+    result = _called(task, nh.Grid({"a": [0.1, 0.5]}))
     batch = nh.ensemble(SLEIGH, steps=50, restricted_velocity=(1.0, 0.2), save_every=10, parameters={"a": [0.1, 0.5]})
-    assert np.array_equal(found["length"], _path_length(batch)["length"])
-    assert found["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+    assert np.array_equal(result["length"], _path_length(batch)["length"])
+    assert result["final_momentum"].tobytes() == batch.restricted_momentum[:, -1].tobytes()
 
 
 def test_functions_of_an_ensemble_may_return_one_array() -> None:
     """An array that is no dictionary is the result."""
-    found = _called(_task(momentum=(1.0, 0.2), reductions=lambda batch: batch.time[:, -1]), nh.Grid({"a": [0.1, 0.5]}))
-    assert found["result"].tolist() == [5.0, 5.0]
+    result = _called(_task(momentum=(1.0, 0.2), reductions=lambda batch: batch.time[:, -1]), nh.Grid({"a": [0.1, 0.5]}))
+    assert result["result"].tolist() == [5.0, 5.0]
 
 
 def test_description_makes_the_task_again() -> None:
@@ -86,10 +86,10 @@ def test_description_makes_the_task_again() -> None:
     }
 
 
-def largest(found: Any, _: np.ndarray) -> int:
+def largest(result: Any, _: np.ndarray) -> int:
     """Choose the real value with the largest momentum, as the rule of that name."""
-    real = np.flatnonzero(found.is_real)
-    return int(real[np.argmax(np.linalg.norm(found.momentum[real], axis=1))])
+    real = np.flatnonzero(result.is_real)
+    return int(real[np.argmax(np.linalg.norm(result.momentum[real], axis=1))])
 
 
 def test_members_take_a_branch_rule() -> None:
@@ -136,19 +136,19 @@ def test_refused_members_are_isolated_and_named(tmp_path: Path) -> None:
     masses = np.ones(200)
     masses[[130, 131, 177]] = -1.0, 0.0, -2.5
     path, task = tmp_path / "run.zarr", _task(restricted_velocity=(1.0, 0.2))
-    found = nh.sweep(task, nh.Grid({"mass": masses}), path, block=100).load()
+    result = nh.sweep(task, nh.Grid({"mass": masses}), path, block=100).load()
     bad = np.flatnonzero(~(masses > 0))
-    assert np.flatnonzero(found["outcome"] == 100).tolist() == bad.tolist()
-    told = dict(standing_of(path).messages)
-    assert sorted(told) == bad.tolist()
-    assert told[177] == (
+    assert np.flatnonzero(result["outcome"] == 100).tolist() == bad.tolist()
+    report = dict(standing_of(path).messages)
+    assert sorted(report) == bad.tolist()
+    assert report[177] == (
         "ValueError: `ChaplyginSleigh(mass=...)` must be positive. Got -2.5. Pass the mass of the body. "
         "This is member 177."
     )
     good = np.flatnonzero(masses > 0)
     batch = nh.ensemble(SLEIGH, steps=50, restricted_velocity=(1.0, 0.2), parameters={"mass": masses[good]})
-    assert found["final_momentum"].values[good].tobytes() == batch.restricted_momentum[:, -1].tobytes()
-    assert np.isnan(found["final_momentum"].values[bad]).all()
+    assert result["final_momentum"].values[good].tobytes() == batch.restricted_momentum[:, -1].tobytes()
+    assert np.isnan(result["final_momentum"].values[bad]).all()
 
 
 START = {"restricted_velocity": (1.0, 0.2)}
@@ -202,9 +202,9 @@ def test_a_start_that_is_varied_whole_need_not_be_given(spelling: str, tmp_path:
     """Components that are all varied are the start; results are selected by names that Python takes."""
     name = "body_velocity"
     design = nh.Grid({spelling.format(name, axis): values for axis, values in enumerate([[0.1, 0.3], [0.2], [0.0]])})
-    with nh.sweep(_task(), design, tmp_path / "s.zarr") as found:
-        cell = found.sel(body_velocity_0=0.3).isel(body_velocity_1=0, body_velocity_2=0)
-        assert found.body_velocity_0.values.tolist() == [0.1, 0.3]
+    with nh.sweep(_task(), design, tmp_path / "s.zarr") as result:
+        cell = result.sel(body_velocity_0=0.3).isel(body_velocity_1=0, body_velocity_2=0)
+        assert result.body_velocity_0.values.tolist() == [0.1, 0.3]
         orbit = nh.simulate(SLEIGH, body_velocity=(0.3, 0.2, 0.0), steps=50)
         assert np.abs(cell.final_momentum.values - orbit.restricted_momentum[-1]).max() < 1e-13
 
@@ -229,11 +229,11 @@ NAMES: dict[str, tuple[Any, list[str] | None, list[str] | None]] = {
 def test_components_of_results_have_names(name: str, tmp_path: Path) -> None:
     """Momenta bear the names of the axes they are along, compact poses those of their numbers."""
     discrete, along, of_poses = NAMES[name]
-    found = nh.sweep(_task(discrete), nh.Grid({"restricted_velocity": [[0.3, 0.4]]}), tmp_path / "a.zarr")
+    result = nh.sweep(_task(discrete), nh.Grid({"restricted_velocity": [[0.3, 0.4]]}), tmp_path / "a.zarr")
     for dimension, names in (("component", along), ("pose_component", of_poses)):
-        assert (found[dimension].values.tolist() if dimension in found.coords else None) == names
+        assert (result[dimension].values.tolist() if dimension in result.coords else None) == names
     if along:
-        assert float(found["final_momentum"].sel(component=along[1])[0]) == found["final_momentum"].values[0, 1]
+        assert float(result["final_momentum"].sel(component=along[1])[0]) == result["final_momentum"].values[0, 1]
 
 
 GRID = nh.Grid({"a": [0.2, 0.6], "speed": [0.5, 1.0, 2.0]})
@@ -260,12 +260,12 @@ def ends(batch: nh.Ensemble) -> dict:
 def test_members_are_runs_of_the_systems_that_the_family_makes(tmp_path: Path) -> None:
     """Parameters, poses, starts, components of them, time steps; what is not named is as given, or the default."""
     task = nh.FamilyTask(sleigh, 0.1, 20, parameters={"velocity": (0.4, 0.0)})
-    found = nh.sweep(task, GRID, tmp_path / "speeds.zarr")
+    result = nh.sweep(task, GRID, tmp_path / "speeds.zarr")
     for a in (0.2, 0.6):
         for speed in (0.5, 1.0, 2.0):
             run = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, a), 0.1)
             alone = nh.simulate(run, configuration=PLACE, body_velocity=(0.4, speed, 0.0), steps=20)
-            member = found.sel(a=a, speed=speed)
+            member = result.sel(a=a, speed=speed)
             assert np.abs(member.final_configuration.values - alone.configuration[-1]).max() <= 1e-14
             assert member.final_time.item() == alone.time[-1]
             assert abs(member.final_energy.item() - alone.energy[-1]) <= 1e-14
@@ -281,16 +281,16 @@ def test_members_are_runs_of_the_systems_that_the_family_makes(tmp_path: Path) -
 def test_reductions_of_families_are_joined(tmp_path: Path) -> None:
     """One array is a result, as of an `EnsembleTask`; systems that return other types than the first are named."""
     speeds = nh.FamilyTask(sleigh, 0.1, 2, reductions=["final_state", lambda batch: batch.energy[:, 0]])
-    found = nh.sweep(speeds, GRID, tmp_path / "speeds.zarr", block=4)
-    assert np.array_equal(found.result.values, found.final_energy.values)
+    result = nh.sweep(speeds, GRID, tmp_path / "speeds.zarr", block=4)
+    assert np.array_equal(result.result.values, result.final_energy.values)
 
     def fractions(batch: nh.Ensemble) -> dict:
         a = batch.members.discrete.system.a
         return {"b": np.full(len(batch), a) if a % 1 else np.full(len(batch), int(a))}
 
     mixed = nh.FamilyTask(sleigh, 0.1, 2, reductions=fractions)
-    found = nh.sweep(mixed, nh.Grid({"a": [1.0, 2.0, 2.5, 3.0]}), tmp_path / "mixed.zarr")
-    assert (found.outcome.values.tolist(), found.b.values.tolist()) == ([0, 0, 100, 0], [1, 2, np.iinfo(int).min, 3])
+    result = nh.sweep(mixed, nh.Grid({"a": [1.0, 2.0, 2.5, 3.0]}), tmp_path / "mixed.zarr")
+    assert (result.outcome.values.tolist(), result.b.values.tolist()) == ([0, 0, 100, 0], [1, 2, np.iinfo(int).min, 3])
     task = nh.FamilyTask(sleigh, 0.1, 2, reductions=["final_state", lambda batch: {"final_time": batch.outcome}])
     with pytest.raises(ValueError, match=r"return each name once\. Got 'final_time'"):
         nh.sweep(task, GRID, tmp_path / "twice.zarr")
@@ -299,10 +299,10 @@ def test_reductions_of_families_are_joined(tmp_path: Path) -> None:
 def test_a_store_names_the_family_and_runs_nothing_of_the_users(tmp_path: Path) -> None:
     """A function of the user's is imported only if it is trusted; a ready system of the library is data."""
     task = nh.FamilyTask(sleigh, 0.1, 5, reductions=["final_state", ends])
-    found = nh.sweep(task, GRID, tmp_path / "own.zarr")
+    result = nh.sweep(task, GRID, tmp_path / "own.zarr")
     assert sorted(functions_of(tmp_path / "own.zarr")) == sorted(f"{__name__}:{name}" for name in ("sleigh", "ends"))
     assert_refused(tmp_path / "own.zarr", "name no function but the library's", nh.resume)
-    assert nh.resume(tmp_path / "own.zarr", task=task).equals(found)
+    assert nh.resume(tmp_path / "own.zarr", task=task).equals(result)
     other = nh.FamilyTask(sleigh, 0.2, 5, reductions=["final_state", ends])
     with pytest.raises(ValueError, match="time_step"):
         nh.resume(tmp_path / "own.zarr", task=other)
@@ -310,9 +310,9 @@ def test_a_store_names_the_family_and_runs_nothing_of_the_users(tmp_path: Path) 
     described = ready.describe()
     assert described["family"] == "examples.sleigh_in_a_well"
     assert json.loads(json.dumps(described)) == described
-    kept = nh.sweep(ready, nh.Grid({"stiffness": [0.1, 0.3]}), tmp_path / "ready.zarr")
+    swept = nh.sweep(ready, nh.Grid({"stiffness": [0.1, 0.3]}), tmp_path / "ready.zarr")
     assert functions_of(tmp_path / "ready.zarr") == []
-    assert nh.resume(tmp_path / "ready.zarr").equals(kept)
+    assert nh.resume(tmp_path / "ready.zarr").equals(swept)
 
 
 @pytest.mark.parametrize("name", ["examples.Example", "examples.needs", "examples.no_such"])
@@ -360,22 +360,22 @@ def test_systems_that_differ_by_parameters_run_as_one_ensemble(tmp_path: Path) -
         return {"weight": batch.parameters["mass"]}
 
     task = nh.FamilyTask(springs, 0.1, 20, reductions=["final_state", counted])
-    found = nh.sweep(task, nh.Grid({"mass": [0.5, 2.0], "stiffness": [1.0, 2.0, 3.0]}), tmp_path / "springs.zarr")
+    result = nh.sweep(task, nh.Grid({"mass": [0.5, 2.0], "stiffness": [1.0, 2.0, 3.0]}), tmp_path / "springs.zarr")
     assert max(sizes) == 6
     for mass in (0.5, 2.0):
         alone = nh.discretize(SPRING.with_parameters(mass=mass, stiffness=3.0), 0.1)
         orbit = nh.simulate(alone, configuration=[1.0], body_velocity=[0.0], steps=20)
-        member = found.sel(mass=mass, stiffness=3.0)
+        member = result.sel(mass=mass, stiffness=3.0)
         assert np.array_equal(member.final_configuration.values, orbit.configuration[-1])
 
 
 def test_components_have_the_names_of_coordinates(tmp_path: Path) -> None:
     """A result has the names of coordinates along its components, those of the algebra for velocities on groups."""
     task = nh.FamilyTask(nh.examples.particle, time_step=0.1, steps=3)
-    found = nh.sweep(task, nh.Grid({"mass": [1.0, 2.0]}), tmp_path / "a.zarr")
-    assert found["coordinate"].values.tolist() == found["component"].values.tolist() == ["x", "y", "z"]
+    result = nh.sweep(task, nh.Grid({"mass": [1.0, 2.0]}), tmp_path / "a.zarr")
+    assert result["coordinate"].values.tolist() == result["component"].values.tolist() == ["x", "y", "z"]
     orbit = nh.examples.particle(mass=2.0).simulate(time_step=0.1, steps=3)
-    assert float(found["final_configuration"].sel(mass=2.0, coordinate="y")) == orbit.configuration[-1, 1]
+    assert float(result["final_configuration"].sel(mass=2.0, coordinate="y")) == orbit.configuration[-1, 1]
     top = nh.FamilyTask(nh.examples.heavy_suslov_top, time_step=0.1, steps=3)
     turned = nh.sweep(top, nh.Grid({"velocity_0": [0.5]}), tmp_path / "b.zarr")
     assert turned["component"].values.tolist() == ["omega1", "omega2", "omega3"]

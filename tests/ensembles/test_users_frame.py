@@ -38,20 +38,20 @@ def _orbit(name: str, **options: Any) -> nh.Orbit:
     return nh.simulate(nh.discretize(SYSTEMS[name], 0.1), configuration=g, **_start(SYSTEMS[name]) | options)
 
 
-def _matrices(found: Any, group: Any) -> np.ndarray:
+def _matrices(result: Any, group: Any) -> np.ndarray:
     """Return the matrices of the poses that a dataset tells under names that people know."""
     n = group.size - int(str(group).startswith("SE"))
-    g = np.broadcast_to(group.identity, (*np.shape(found["energy"]), group.size, group.size)).copy()
-    if "heading" in found:
-        c, s = np.cos(found["heading"]), np.sin(found["heading"])
+    g = np.broadcast_to(group.identity, (*np.shape(result["energy"]), group.size, group.size)).copy()
+    if "heading" in result:
+        c, s = np.cos(result["heading"]), np.sin(result["heading"])
         g[..., 0, 0], g[..., 0, 1], g[..., 1, 0], g[..., 1, 1] = c, -s, s, c
-    elif "quaternion" in found:
-        g[..., :3, :3] = nh.SO(3).matrix_from_pose(np.asarray(found["quaternion"]))
+    elif "quaternion" in result:
+        g[..., :3, :3] = nh.SO(3).matrix_from_pose(np.asarray(result["quaternion"]))
     else:
-        g[..., :n, :n] = found["rotation"]
+        g[..., :n, :n] = result["rotation"]
     for axis, name in enumerate("xyz"):
-        if name in found:
-            g[..., axis, n] = found[name]
+        if name in result:
+            g[..., axis, n] = result[name]
     return g
 
 
@@ -63,14 +63,14 @@ def _close(one: Any, other: Any) -> bool:
 def test_orbits_and_their_datasets(name: str) -> None:
     """`pose` and the named variables are those of `configuration`, which begins where the user said."""
     orbit = _orbit(name)
-    group, found = orbit.system.group, orbit.to_dataset()
+    group, result = orbit.system.group, orbit.to_dataset()
     assert _close(orbit.configuration[0], group.random(np.random.default_rng(4)))
     assert _close(group.matrix_from_pose(orbit.pose), orbit.configuration)
-    assert _close(_matrices(found, group), orbit.configuration)
+    assert _close(_matrices(result, group), orbit.configuration)
     for quantity in ("body_velocity", "momentum", "restricted_momentum", "energy"):
-        assert np.array_equal(found[quantity], getattr(orbit, quantity)), quantity
-    if "quaternion" in found:
-        assert (np.diff(found["quaternion"], axis=0) ** 2).sum(axis=1).max() < 0.1, "signs have to continue"
+        assert np.array_equal(result[quantity], getattr(orbit, quantity)), quantity
+    if "quaternion" in result:
+        assert (np.diff(result["quaternion"], axis=0) ** 2).sum(axis=1).max() < 0.1, "signs have to continue"
 
 
 @pytest.mark.profile("routes", keep=["sleigh", "askew"])
@@ -81,9 +81,9 @@ def test_stores_as_xarray_opens_them(name: str, tmp_path: Path) -> None:
     nh.save_orbit(orbit, tmp_path / "whole.zarr")
     _orbit(name, store=tmp_path / "run.zarr", checkpoint_every=7)
     for path in ("whole.zarr", "run.zarr"):
-        with xarray.open_zarr(tmp_path / path, chunks=None) as found:
-            told = orbit.to_dataset().drop_vars(["body_velocity", "momentum", "step"])
-            xarray.testing.assert_identical(found.load().drop_attrs(), told.drop_attrs())
+        with xarray.open_zarr(tmp_path / path, chunks=None) as result:
+            report = orbit.to_dataset().drop_vars(["body_velocity", "momentum", "step"])
+            xarray.testing.assert_identical(result.load().drop_attrs(), report.drop_attrs())
     again = nh.load_orbit(tmp_path / "run.zarr")
     assert np.array_equal(again.canonical_pose, orbit.canonical_pose)
     assert _close(again.pose, orbit.pose)
@@ -108,8 +108,8 @@ def test_ensembles(name: str) -> None:
 def test_ensembles_of_bodies_with_frames_of_their_own(order: int) -> None:
     """Where b differs from member to member each pose is in the frame of its own body."""
     discrete = nh.discretize(nh.ChaplyginSleigh(1.3, 0.7, 0.5), 0.1, order=order)
-    given = {"parameters": {"b": [0.0, 0.3, -0.2]}, "restricted_velocity": (0.9, -0.4), "steps": 20}
-    batch = nh.ensemble(discrete, save_every=5, **given)
+    arguments = {"parameters": {"b": [0.0, 0.3, -0.2]}, "restricted_velocity": (0.9, -0.4), "steps": 20}
+    batch = nh.ensemble(discrete, save_every=5, **arguments)
     for member in range(3):
         assert _close(batch.pose[member], batch.orbit(member).pose)
         assert _close(batch.orbit(member).configuration[0], np.eye(3))
@@ -121,22 +121,22 @@ def test_ensembles_of_bodies_with_frames_of_their_own(order: int) -> None:
 )
 def test_last_poses_of_sweeps(name: str, axes: dict[str, Any], tmp_path: Path) -> None:
     """The last poses of a sweep, and their CSV, are those of runs one by one."""
-    system, given = SYSTEMS[name], _start(SYSTEMS[name])
-    task = nh.EnsembleTask(nh.discretize(system, 0.1), **given)
+    system, arguments = SYSTEMS[name], _start(SYSTEMS[name])
+    task = nh.EnsembleTask(nh.discretize(system, 0.1), **arguments)
     ((parameter, values),) = axes.items()
     stream = io.StringIO()
-    with nh.sweep(task, nh.Grid(axes), tmp_path / "s.zarr") as found:
-        poses = found["final_pose"].values
+    with nh.sweep(task, nh.Grid(axes), tmp_path / "s.zarr") as result:
+        poses = result["final_pose"].values
     sweep_to_csv(tmp_path / "s.zarr", stream)
     rows = np.array([line.split(",") for line in stream.getvalue().splitlines()[1:]], dtype=float)
     for member, value in enumerate(values):
         step = value if parameter == "time_step" else 0.1
         body = nh.ChaplyginSleigh(1.3, 0.7, 0.5, b=value) if parameter == "b" else system
-        g = nh.simulate(nh.discretize(body, step), **given).configuration[-1]
+        g = nh.simulate(nh.discretize(body, step), **arguments).configuration[-1]
         assert _close(system.group.matrix_from_pose(poses[member]), g)
-        told = {"heading": rows[member, -1], "x": rows[member, -3], "y": rows[member, -2]}
-        told = told if parameter == "b" else {"quaternion": rows[member, -4:]}
-        assert _close(_matrices({**told, "energy": 0.0}, system.group), g)
+        report = {"heading": rows[member, -1], "x": rows[member, -3], "y": rows[member, -2]}
+        report = report if parameter == "b" else {"quaternion": rows[member, -4:]}
+        assert _close(_matrices({**report, "energy": 0.0}, system.group), g)
 
 
 @pytest.mark.profile("routes", keep=["sleigh", "askew", "sleigh in space"])
@@ -147,11 +147,11 @@ def test_tables(name: str, tmp_path: Path) -> None:
     orbit_to_csv(orbit, tmp_path / "o.csv")
     store_to_csv(tmp_path / "run.zarr", stream)
     assert stream.getvalue() == (tmp_path / "o.csv").read_text()
-    found = orbit.to_dataset()
-    names = [known for known in ("x", "y", "z", "heading", "quaternion") if known in found]
-    told = np.column_stack([found["time"], *(found[known] for known in names)])
+    result = orbit.to_dataset()
+    names = [reference for reference in ("x", "y", "z", "heading", "quaternion") if reference in result]
+    report = np.column_stack([result["time"], *(result[reference] for reference in names)])
     rows = np.array([line.split(",") for line in stream.getvalue().splitlines()[1:]], dtype=float)
-    assert np.array_equal(rows, told)
+    assert np.array_equal(rows, report)
 
 
 def test_products_have_their_factors_by_name() -> None:
@@ -161,9 +161,9 @@ def test_products_have_their_factors_by_name() -> None:
     rng = np.random.default_rng(0)
     g = np.stack([group.random(rng) for _ in range(5)])
     motion = nh.flow(system, restricted_velocity=(0.1, 0.2, 0.0), times=[0.0, 1.0]).motion
-    found = nh.Orbit(motion, np.arange(5.0), np.ones((5, 3)), None, group.pose_from_matrix(g)).to_dataset()
-    assert {"x", "y", "heading", "shape", "quaternion"} <= set(found.variables)
-    assert _close(np.column_stack([found["x"], found["y"]]), g[:, :2, 2])
-    assert _close(np.cos(found["heading"]), g[:, 0, 0])
-    assert _close(found["shape"], g[:, 3:5, 5])
-    assert _close(nh.SO(3).matrix_from_pose(found["quaternion"].values), g[:, 6:, 6:])
+    result = nh.Orbit(motion, np.arange(5.0), np.ones((5, 3)), None, group.pose_from_matrix(g)).to_dataset()
+    assert {"x", "y", "heading", "shape", "quaternion"} <= set(result.variables)
+    assert _close(np.column_stack([result["x"], result["y"]]), g[:, :2, 2])
+    assert _close(np.cos(result["heading"]), g[:, 0, 0])
+    assert _close(result["shape"], g[:, 3:5, 5])
+    assert _close(nh.SO(3).matrix_from_pose(result["quaternion"].values), g[:, 6:, 6:])

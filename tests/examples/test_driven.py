@@ -135,14 +135,14 @@ def test_paths_are_those_derived_by_hand(name: str) -> None:
 
     The axle of the robot keeps its angle.
     """
-    made, rate, first, path = BY_HAND[name]
-    ready = made()
-    found = ready.flow(times=TIMES, rtol=1e-13, atol=1e-14)
+    things, rate, first, path = BY_HAND[name]
+    ready = things()
+    result = ready.flow(times=TIMES, rtol=1e-13, atol=1e-14)
     by_hand = _solved(rate, first or [*ready.configuration[:3], *ready.body_velocity[:3]])[path]
-    assert np.abs(found.configuration[:, :3] - by_hand.T).max() <= 1e-10
+    assert np.abs(result.configuration[:, :3] - by_hand.T).max() <= 1e-10
     if name == "robot":
         assert list(ready.conserved) == ["axle"]
-        assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
+        assert np.ptp(ready.conserved["axle"](result.configuration, result.body_velocity)) <= 1e-11
 
 
 def test_torques_of_the_robot() -> None:
@@ -168,12 +168,12 @@ def test_the_ball_moves_as_derived_by_hand() -> None:
     first = ready.conserved
     start = [first[f"momentum along {axis}"](ready.configuration, ready.body_velocity) for axis in "xyz"]
     by_hand = _solved(_ball_by_hand, [*start, *np.eye(3).ravel(), 0.0, 0.0, 0.0])
-    found = ready.flow(times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3, :3].reshape(-1, 9) - by_hand[3:12].T).max() <= 1e-10
-    assert np.abs(found.configuration[:, :3, 3] - by_hand[12:].T).max() <= 1e-10
-    assert np.ptp(found.energy) <= 1e-11
-    kept = [values(found.configuration, found.body_velocity) for values in first.values()]
-    assert np.ptp(kept, axis=1).max() <= 1e-11
+    result = ready.flow(times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(result.configuration[:, :3, :3].reshape(-1, 9) - by_hand[3:12].T).max() <= 1e-10
+    assert np.abs(result.configuration[:, :3, 3] - by_hand[12:].T).max() <= 1e-10
+    assert np.ptp(result.energy) <= 1e-11
+    integrals = [values(result.configuration, result.body_velocity) for values in first.values()]
+    assert np.ptp(integrals, axis=1).max() <= 1e-11
 
 
 @pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
@@ -182,16 +182,16 @@ def test_integrals_under_a_potential(name: str) -> None:
     """Constant along the flow."""
     ready = getattr(nh.examples, name)()
     orbit = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
-    for kept in ready.conserved.values():
-        assert np.ptp(kept(orbit.configuration, orbit.body_velocity)) <= 1e-11
+    for integral in ready.conserved.values():
+        assert np.ptp(integral(orbit.configuration, orbit.body_velocity)) <= 1e-11
 
 
 def test_the_sleigh_in_a_well_obeys_a_linear_system() -> None:
     """With its center of mass at the contact: speed and place seen from the sleigh, by the exponential of a matrix."""
     ready, k, omega = nh.examples.sleigh_in_a_well(), 0.3, 0.4
     matrix = np.array([[0.0, -k, 0.0], [1.0, 0.0, omega], [0.0, -omega, 0.0]])
-    found = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
-    for time, g, velocity in zip(TIMES, found.configuration, found.body_velocity, strict=True):
+    result = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
+    for time, g, velocity in zip(TIMES, result.configuration, result.body_velocity, strict=True):
         u, s, w = scipy.linalg.expm(time * matrix) @ [0.7, 0.0, 0.0]
         assert np.abs(g[:2, :2].T @ g[:2, 2] - [s, w]).max() <= 1e-10
         assert np.abs(velocity - [omega, u, 0.0]).max() <= 1e-10

@@ -52,9 +52,9 @@ def test_the_flow_is_the_published_solution(name: str) -> None:
 def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
     """Each of them, one at least, and the energy, to rounding and solver errors; velocities stay admissible."""
     orbit = flow(name)
-    found = [f(orbit.configuration, orbit.body_velocity) for f in ready(name).conserved.values()]
-    assert len(found) > 0
-    assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in found) <= 1e-11
+    result = [f(orbit.configuration, orbit.body_velocity) for f in ready(name).conserved.values()]
+    assert len(result) > 0
+    assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in result) <= 1e-11
     assert np.ptp(orbit.energy) <= 1e-11
     assert orbit.constraint_residual.max() <= 1e-14
 
@@ -107,16 +107,16 @@ def test_the_robot_speeds_up_like_a_sleigh() -> None:
 
 @pytest.mark.profile("routes", keep=["particle"])
 @pytest.mark.parametrize(
-    ("name", "kept"),
+    ("name", "rows"),
     [("particle", ["y'"]), ("snakeboard", ["phi'", "theta' + psi'"]), ("two_wheeled_robot", ["axle"])],
     ids=["particle", "snakeboard", "robot"],
 )
-def test_what_the_midpoint_rule_conserves(name: str, kept: list[str]) -> None:
+def test_what_the_midpoint_rule_conserves(name: str, rows: list[str]) -> None:
     """Momenta along constant admissible directions and integrable linear constraints are kept; the others are not."""
     orbit = run(name, 0.1)
     middle = orbit.configuration + orbit.displacement / 2
     spread = {key: np.ptp(f(middle, orbit.body_velocity)) for key, f in ready(name).conserved.items()}
-    assert {key for key, width in spread.items() if width <= 1e-13} == set(kept)
+    assert {key for key, width in spread.items() if width <= 1e-13} == set(rows)
     assert max(spread.values()) > 1e-5
 
 

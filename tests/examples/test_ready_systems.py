@@ -111,15 +111,15 @@ def test_a_ready_system_is_first_class(name: str) -> None:
     place = int(np.argmax(np.ptp(flat, axis=0)))
     level = (flat[17, place] + flat[18, place]) / 2
     event = nh.Event(lambda states: states.configuration.reshape(len(states), -1)[:, place] - level, name="level")
-    found = ready.simulate(time_step=2 * ready.time_step, steps=STEPS, events=[event]).events["level"]
-    at = int(np.flatnonzero(found.step == 17)[0])
-    assert np.abs(event.function(found.states)).max() <= 4 * np.spacing(np.abs(flat[:, place]).max())
+    result = ready.simulate(time_step=2 * ready.time_step, steps=STEPS, events=[event]).events["level"]
+    at = int(np.flatnonzero(result.step == 17)[0])
+    assert np.abs(event.function(result.states)).max() <= 4 * np.spacing(np.abs(flat[:, place]).max())
     if name not in DRIVEN:  # whose runs begin at time 0
-        part = dataclasses.replace(discrete, time_step=found.fraction[at] * float(discrete.time_step))
+        part = dataclasses.replace(discrete, time_step=result.fraction[at] * float(discrete.time_step))
         momentum = (orbit.restricted_momentum if name in FORCED else orbit.momentum)[17]
         reached = nh.simulate(part, configuration=orbit.configuration[17], momentum=momentum, steps=1)
         # starts from a momentum solve the same equations; their roots are exact to 1e-10 squared
-        assert np.abs(found.states.configuration[at] - reached.configuration[1]).max() <= 1e-13
+        assert np.abs(result.states.configuration[at] - reached.configuration[1]).max() <= 1e-13
 
 
 ROLLING = {
@@ -133,11 +133,11 @@ ROLLING = {
 
 def parts_in_space(name: str, x: float, y: float, heading: float, parts: list[Array]) -> list[tuple[Array, Array]]:
     """Return middle and axle, a unit vector, of each part of a body at a pose that is on the ground."""
-    turn, found = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]), []
+    turn, result = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]), []
     for part in (parts[k] @ turn for k in ROLLING[name]):
         ahead = (part[1] - part[0]) / np.linalg.norm(part[1] - part[0])
-        found.append((part.mean(axis=0) + np.array([x, y]), np.array([-ahead[1], ahead[0]])))
-    return found
+        result.append((part.mean(axis=0) + np.array([x, y]), np.array([-ahead[1], ahead[0]])))
+    return result
 
 
 def in_coordinates(name: str, q: Array, v: Array) -> Callable[[float], list[tuple[Array, Array]]]:

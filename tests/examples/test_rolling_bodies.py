@@ -57,9 +57,9 @@ def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     sin, cos = np.sin(0.25), np.cos(0.25)
     first = np.array([0.25, -0.4, 1.3 * cos, 2.0 + 1.3 * sin, 0.3, 0.0, 0.1, -0.2])
     exact = solved(disk_by_newton_and_euler, first, times)
-    found = ready.flow(times=times, **ACCURATE)
-    assert np.abs(found.configuration - exact[:, [6, 7, 4, 0, 5]]).max() <= 1e-10
-    assert abs(order(ready, found, 400) - 2.0) <= 0.1
+    result = ready.flow(times=times, **ACCURATE)
+    assert np.abs(result.configuration - exact[:, [6, 7, 4, 0, 5]]).max() <= 1e-10
+    assert abs(order(ready, result, 400) - 2.0) <= 0.1
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -69,9 +69,9 @@ def test_the_disk_has_the_equations_that_a_page_of_sympy_lacks(seed: int) -> Non
     lean, rates, gravity = rng.uniform(-1.3, 1.3), rng.normal(size=3) * 2, 3.0
     q, v = np.array([0.0, 0.0, 0.4, lean, 0.0]), np.array([np.cos(0.4) * rates[2], np.sin(0.4) * rates[2], *rates])
     with double_precision():
-        found = np.asarray(of_the_disk(gravity)(jnp.asarray(q), jnp.asarray(v)))
+        result = np.asarray(of_the_disk(gravity)(jnp.asarray(q), jnp.asarray(v)))
     wanted = published.rolling_disk(gravity, rates, lean)
-    assert np.abs(found[2:] - wanted).max() <= 1e-13 * np.abs(wanted).max()
+    assert np.abs(result[2:] - wanted).max() <= 1e-13 * np.abs(wanted).max()
 
 
 @functools.cache
@@ -114,9 +114,9 @@ def boat_by_newton_and_euler(a2: Array, low: float, tensor: Array, g: float) -> 
         dup = np.cross(up, w)
         dcontact = a2 * up * (up @ (a2 * dup)) / width**3 - a2 * dup / width
         # v = contact x w; force F = (v' + w x v) + g up; torque contact x F = tensor w' + w x tensor w
-        known = np.cross(dcontact, w) + np.cross(w, np.cross(contact, w)) + g * up
+        reference = np.cross(dcontact, w) + np.cross(w, np.cross(contact, w)) + g * up
         about = tensor + (contact @ contact) * np.eye(3) - np.outer(contact, contact)
-        dw = np.linalg.solve(about, np.cross(contact, known) - np.cross(w, tensor @ w))
+        dw = np.linalg.solve(about, np.cross(contact, reference) - np.cross(w, tensor @ w))
         return np.concatenate([dup, np.cross(ahead, w), dw])
 
     return rates
@@ -130,18 +130,18 @@ def test_the_rattleback_moves_as_balances_of_momentum_say() -> None:
     lean = 0.01
     first = np.array([0.0, np.sin(lean), np.cos(lean), 1.0, 0.0, 0.0, 0.0, 5 * np.sin(lean), 5 * np.cos(lean)])
     exact = solved(boat_by_newton_and_euler(np.array([20.0, 3.0, 2.0]) ** 2, 1.0, tensor, 980.665), first, times)
-    found = ready.flow(times=times, rtol=1e-11, atol=1e-11)
+    result = ready.flow(times=times, rtol=1e-11, atol=1e-11)
     up, ahead = exact[:, :3], exact[:, 3:6]
     lean, pitch = np.arcsin(up[:, 1]), np.arctan2(-up[:, 0], up[:, 2])
-    assert np.abs(found.configuration[:, 3:] - np.stack([lean, pitch], axis=1)).max() <= 1e-7
+    assert np.abs(result.configuration[:, 3:] - np.stack([lean, pitch], axis=1)).max() <= 1e-7
     # x of space in the body is e(-heading) of the level axes of the body
     level = np.stack([np.cos(pitch), np.zeros(18), np.sin(pitch)], axis=1)
     left = np.cross(up, level)
     heading = np.arctan2(-(ahead * left).sum(axis=1), (ahead * level).sum(axis=1))
-    assert np.abs(np.exp(1j * heading) - np.exp(1j * found.configuration[:, 2])).max() <= 1e-6
-    assert found.body_velocity[0, 2] == 5.0
-    assert found.body_velocity[-1, 2] < -4.0  # turned back
-    assert np.ptp(found.energy) <= 1e-9 * found.energy[0]
+    assert np.abs(np.exp(1j * heading) - np.exp(1j * result.configuration[:, 2])).max() <= 1e-6
+    assert result.body_velocity[0, 2] == 5.0
+    assert result.body_velocity[-1, 2] < -4.0  # turned back
+    assert np.ptp(result.energy) <= 1e-9 * result.energy[0]
 
 
 @ROUTES
@@ -160,8 +160,8 @@ def test_the_ball_on_the_turntable_runs_on_circles() -> None:
         )
         orbit = ready.flow(times=np.linspace(0.0, 8.0, 9), **ACCURATE)
         assert np.abs(orbit.configuration - ready.exact(orbit.time)).max() <= 1e-11
-        found = [f(orbit.configuration, orbit.body_velocity) for f in ready.conserved.values()]
-        assert np.ptp(found, axis=1).max() <= 1e-11
+        result = [f(orbit.configuration, orbit.body_velocity) for f in ready.conserved.values()]
+        assert np.ptp(result, axis=1).max() <= 1e-11
         x, y = ready.simulate(steps=100, time_step=0.2).configuration[:, :2].T
         chord = np.diff(x + 1j * y)
         assert np.abs(np.angle(chord[1:] / chord[:-1]) - 2 * np.arctan(0.1 * 2 / 7 * table_rate)).max() <= 1e-12
@@ -185,11 +185,11 @@ def test_the_ball_in_the_bowl_is_a_spherical_pendulum_in_a_magnetic_field(spin: 
     depth = np.sqrt(rho**2 - 0.25 - 0.64)
     first = np.array([0.5, -0.8, -depth, 0.7, 0.3, (0.5 * 0.7 - 0.8 * 0.3) / depth]) / rho
     times = np.linspace(0.0, 4.0, 9)
-    found = ready.flow(times=times, **ACCURATE)
-    assert np.abs(found.configuration[:, :2] - rho * solved(rates, first, times)[:, :2]).max() <= 1e-10
-    constants = [f(found.configuration, found.body_velocity) for f in ready.conserved.values()]
+    result = ready.flow(times=times, **ACCURATE)
+    assert np.abs(result.configuration[:, :2] - rho * solved(rates, first, times)[:, :2]).max() <= 1e-10
+    constants = [f(result.configuration, result.body_velocity) for f in ready.conserved.values()]
     assert np.ptp(constants, axis=1).max() <= 1e-10
-    assert abs(order(ready, found, 200) - 2.0) <= 0.1
+    assert abs(order(ready, result, 200) - 2.0) <= 0.1
 
 
 @pytest.mark.profile("routes", keep=["one"])
@@ -218,8 +218,8 @@ def test_trailers_follow_by_the_recursion_of_speeds(hitches: tuple[float, ...]) 
         return np.array([u * np.cos(z[2]), u * np.sin(z[2]), -0.5, *(u * turning)])
 
     times = np.linspace(0.0, 4.0, 9)
-    found = ready.flow(times=times, **ACCURATE)
-    assert np.abs(found.configuration - solved(rates, ready.configuration, times)).max() <= 1e-10
+    result = ready.flow(times=times, **ACCURATE)
+    assert np.abs(result.configuration - solved(rates, ready.configuration, times)).max() <= 1e-10
     assert np.ptp(ready.simulate(steps=80).body_velocity[:, 2]) <= 1e-13
 
 
@@ -256,9 +256,9 @@ def test_the_snake_moves_as_its_joints_and_its_energy_say() -> None:
         return np.concatenate([v, np.linalg.solve(B.T * masses @ B, -(B.T * masses) @ bias)])
 
     loose = solved(rates, np.array([*ready.configuration, 0.3, 0.5]), times, rtol=1e-10, atol=1e-10)
-    found = ready.flow(times=times, **ACCURATE)
-    assert np.abs(found.configuration - loose[:, :5]).max() <= 1e-8
-    assert np.ptp(ready.conserved["energy"](found.configuration, found.body_velocity)) <= 1e-11
+    result = ready.flow(times=times, **ACCURATE)
+    assert np.abs(result.configuration - loose[:, :5]).max() <= 1e-8
+    assert np.ptp(ready.conserved["energy"](result.configuration, result.body_velocity)) <= 1e-11
 
 
 @ROUTES
@@ -289,8 +289,8 @@ test_bad_parameters_are_refused = refusals(
 def test_the_linear_equations_are_those_of_the_benchmark() -> None:
     """M from torques, C1, K0 and K2 from derivatives at two speeds: 14 digits of the largest entry of each."""
     matrices = published.M, published.C1, published.K0, published.K2
-    for found, wanted in zip(published.linear_equations(), matrices, strict=True):
-        assert np.abs(found - wanted).max() <= 1e-14 * np.abs(wanted).max()
+    for result, wanted in zip(published.linear_equations(), matrices, strict=True):
+        assert np.abs(result - wanted).max() <= 1e-14 * np.abs(wanted).max()
 
 
 @pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
@@ -304,10 +304,10 @@ def test_eigenvalues_are_those_of_the_table(speed: int) -> None:
 
 def test_accelerations_far_from_upright_are_published() -> None:
     """Of a turning, leaning, steered state: table 1 of Basu-Mandal et al., in its 13 digits, turned into our axes."""
-    height, slip, found, wanted = published.turning_state()
+    height, slip, result, wanted = published.turning_state()
     assert abs(height) <= 1e-13
     assert slip <= 1e-12
-    assert np.abs(found - wanted).max() <= 2e-12
+    assert np.abs(result - wanted).max() <= 2e-12
 
 
 @pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")

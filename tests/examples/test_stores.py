@@ -60,8 +60,8 @@ def test_blocks_of_any_size_hold_the_run(rows: int, tmp_path: Path) -> None:
         nh.simulate(discrete(), **start(), steps=41, save_every=2, store=path, checkpoint_every=2 * rows), whole
     )
     with xarray.open_zarr(path, chunks=None) as dataset:
-        told = whole.to_dataset().drop_vars(["coordinate", "step"])
-        xarray.testing.assert_equal(dataset.load(), told)
+        report = whole.to_dataset().drop_vars(["coordinate", "step"])
+        xarray.testing.assert_equal(dataset.load(), report)
         assert dataset.configuration.attrs["components"] == ["x", "y", "z"]
         assert np.isnan(dataset.multipliers.values[:, 0]).tolist() == [False] * 20 + [True]
     nh.save_orbit(whole, tmp_path / "orbit.zarr")
@@ -76,9 +76,9 @@ def test_the_store_of_a_custom_lagrangian_opens_as_data(tmp_path: Path) -> None:
     path, whole = tmp_path / "run.zarr", nh.simulate(own(), **start(), steps=40)
     nh.simulate(own(), **start(), steps=30, store=path, checkpoint_every=8)
     questions = (nh.resume, lambda store: nh.extend(store, 10), lambda store: nh.load_orbit(store).restricted_momentum)
-    for asked in questions:
+    for question in questions:
         with pytest.raises(ValueError, match=r"`load_orbit\(discrete=\.\.\.\)` must be .* Pass the one that made"):
-            asked(path)
+            question(path)
     for other in (discrete(), nh.discretize(own().system, 0.2), nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)):
         with pytest.raises(ValueError, match="must be the discretization of the store"):
             nh.extend(path, 10, discrete=other)

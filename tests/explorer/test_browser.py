@@ -35,13 +35,13 @@ def _top4(p: dict[str, float]) -> Any:
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages of a top and a sleigh, free, under forces and a table; on SO(4); replayed: on SO(5), a snakeboard."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*SENT, "replay", "outline", "top4")}
+    result = {name: folder / f"{name}.html" for name in (*SENT, "replay", "outline", "top4")}
     for name in (*SENT, "top4"):
-        _sent(name).to_html(found[name])
+        _sent(name).to_html(result[name])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) + 0.3), 0.1)
-    nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(found["replay"])
-    nh.examples.snakeboard().simulate(steps=50).to_html(found["outline"])
-    return found
+    nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(result["replay"])
+    nh.examples.snakeboard().simulate(steps=50).to_html(result["outline"])
+    return result
 
 
 def _sent(name: str) -> nh.Orbit:
@@ -365,13 +365,13 @@ def test_all_values(visit: Callable, files: dict, name: str) -> None:
         page.set("r1", float(momentum[0]))
         page.set("r2", float(momentum[1]))
         state, body = page.page.evaluate("nonholo.state"), BODIES[name]
-        known = nh.displacements_over(nh.discretize(body, 1.0), state["momentum"])
+        reference = nh.displacements_over(nh.discretize(body, 1.0), state["momentum"])
         y = np.array(page.page.evaluate("nonholo.values")) @ [1, 1j]
-        expected = _chart_of(body, known.displacement)
+        expected = _chart_of(body, reference.displacement)
         assert len(y) == len(expected)
         for value in y:
             assert np.abs(expected - value).sum(axis=1).min() <= 1e-8 * (1 + np.abs(value).sum())
-        real = np.count_nonzero(known.is_real)
+        real = np.count_nonzero(reference.is_real)
         assert page.page.evaluate("nonholo.count(nonholo.state.momentum)") == real
         assert f"{real} of {len(y)}" in page.page.inner_text("#now")
     assert page.errors == []
@@ -504,9 +504,9 @@ def test_time(visit: Callable, files: dict) -> None:
     page.until("Number(document.getElementById('scrub').value) > 3")
     page.page.keyboard.press("Space")
     page.settle()
-    held = page.page.input_value("#scrub")
+    value = page.page.input_value("#scrub")
     page.page.wait_for_timeout(150)
-    assert page.page.input_value("#scrub") == held
+    assert page.page.input_value("#scrub") == value
     page.page.focus("#scrub")
     page.page.keyboard.press("Home")
     page.page.keyboard.press("ArrowRight")

@@ -176,9 +176,9 @@ def laboratory(tmp_path: Path) -> Iterator[tuple[str, Path]]:
 
 def _address(log: Path, server: subprocess.Popen) -> str:
     for _ in range(600):
-        found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab", log.read_text())
-        if found:
-            address = f"http://127.0.0.1:{found[1]}"
+        result = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/lab", log.read_text())
+        if result:
+            address = f"http://127.0.0.1:{result[1]}"
             urllib.request.urlopen(f"{address}/api").read()  # noqa: S310
             return address
         assert server.poll() is None, log.read_text()

@@ -25,9 +25,9 @@ SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
 
 
 def _data(text: str) -> dict[str, Any]:
-    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)
-    assert found is not None
-    return json.loads(found[1])
+    result = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)
+    assert result is not None
+    return json.loads(result[1])
 
 
 def _numbers(packed: dict[str, str], *names: str) -> list[np.ndarray]:
@@ -223,8 +223,8 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     assert data["momenta"] == ["p(a)", "p(y)"]
     monkeypatch.setattr(CoordinateOrbit, "work", orbit.time**2)
     text = nh.explore(orbit.chosen(slice(None))).text  # which remembers nothing
-    (shown,) = _numbers(_data(text)["replay"], "energy")
-    np.testing.assert_allclose(shown / shown[0] - 1, (orbit.time - orbit.time**2) / 2, atol=1e-15)
+    (curve,) = _numbers(_data(text)["replay"], "energy")
+    np.testing.assert_allclose(curve / curve[0] - 1, (orbit.time - orbit.time**2) / 2, atol=1e-15)
     assert "less the work of forces" in text
 
 

@@ -59,8 +59,8 @@ def test_every_link_leads_somewhere(site: Path) -> None:
             if parts.scheme or parts.netloc:
                 continue
             target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
-            known = {"", "top", *pages[target].places} if target in pages else {"", unquote(parts.fragment)}
-            if not target.exists() or unquote(parts.fragment) not in known:
+            reference = {"", "top", *pages[target].places} if target in pages else {"", unquote(parts.fragment)}
+            if not target.exists() or unquote(parts.fragment) not in reference:
                 lost.append((str(page.relative_to(site)), link))
     assert len(pages) > 60
     assert lost == []
@@ -69,16 +69,16 @@ def test_every_link_leads_somewhere(site: Path) -> None:
 @pytest.mark.profile("site", instead="test_what_a_page_loads")
 def test_nothing_is_asked_of_elsewhere(site: Path, address: str, browser: Any) -> None:
     """Every page of the site, open in Chromium, asks its own server alone; so does the live page of the first one."""
-    page, asked = browser.new_page(), set()
-    page.on("request", lambda request: asked.add(request.url))
+    page, requests = browser.new_page(), set()
+    page.on("request", lambda request: requests.add(request.url))
     for path in _pages(site):
         page.goto(address + path.relative_to(site).as_posix(), wait_until="load")
     page.goto(address)
     page.locator("iframe.live").scroll_into_view_if_needed()
     page.frame_locator("iframe.live").get_by_text("energy kept to").wait_for()
     page.close()
-    assert address + "live/sleigh.html" in asked
-    assert {url for url in asked if not url.startswith((address, "data:", "blob:", "about:"))} == set()
+    assert address + "live/sleigh.html" in requests
+    assert {url for url in requests if not url.startswith((address, "data:", "blob:", "about:"))} == set()
 
 
 VIEW = Path(explorer.__file__).with_name("view")

@@ -47,11 +47,11 @@ class Module:
         pages = wasmtime.MemoryType(wasmtime.Limits(-(-size // 65536), None))
         memory = wasmtime.Memory(self.store, pages)
         kind = wasmtime.GlobalType(wasmtime.ValType.i32(), True)
-        given = {
+        arguments = {
             "__linear_memory": memory,
             "__stack_pointer": wasmtime.Global(self.store, kind, wasmtime.Val.i32(STACK)),
         }
-        instance = wasmtime.Instance(self.store, self.module, [given[item.name] for item in self.module.imports])
+        instance = wasmtime.Instance(self.store, self.module, [arguments[item.name] for item in self.module.imports])
         self.run = instance.exports(self.store)["run"]
         start = ctypes.addressof(memory.data_ptr(self.store).contents)
         numbers = (ctypes.c_double * (memory.data_len(self.store) // 8)).from_address(start)

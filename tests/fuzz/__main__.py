@@ -30,10 +30,10 @@ def run(name: str, seed: int) -> tuple[dict[str, Any], bool]:
         return json.loads(file.read_text()), code != 0
 
 
-def merged(file: Path, found: dict[str, Any]) -> dict[str, Any]:
+def merged(file: Path, result: dict[str, Any]) -> dict[str, Any]:
     """Return figures with those of other fuzzers that a file holds, in the order of the page."""
-    held = json.loads(file.read_text()) if file.exists() else {}
-    return {name: {**held, **found}[name] for name in LONG if name in {**held, **found}}
+    content = json.loads(file.read_text()) if file.exists() else {}
+    return {name: {**content, **result}[name] for name in LONG if name in {**content, **result}}
 
 
 def main() -> int:
@@ -42,13 +42,13 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", choices=LONG, default=list(LONG), help="which of them")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", type=Path, help="where the figures are written")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     broken = False
-    for name in given.only:
-        found, wrong = run(name, given.seed)
+    for name in arguments.only:
+        result, wrong = run(name, arguments.seed)
         broken |= wrong
-        if given.json:
-            given.json.write_text(json.dumps(merged(given.json, {name: found}), indent=1))
+        if arguments.json:
+            arguments.json.write_text(json.dumps(merged(arguments.json, {name: result}), indent=1))
     return int(broken)
 
 

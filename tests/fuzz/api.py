@@ -25,31 +25,31 @@ from fuzz.worker import answers
 
 def verdicts(trials: list[Trial], workers: int) -> list[tuple[Trial, Verdict]]:
     """Return what came of trials."""
-    found = answers("fuzz.trials:prepared", trials, workers)
-    return [(trial, Verdict(answer) if isinstance(answer, str) else answer) for trial, answer in found]
+    result = answers("fuzz.trials:prepared", trials, workers)
+    return [(trial, Verdict(answer) if isinstance(answer, str) else answer) for trial, answer in result]
 
 
-def figures(found: list[tuple[Trial, Verdict]]) -> dict[str, Any]:
+def figures(result: list[tuple[Trial, Verdict]]) -> dict[str, Any]:
     """Return the counts, and of what broke the trials."""
-    counts = collections.Counter(verdict.kind for _, verdict in found)
-    broken = sorted((v.kind, told(trial), v.message) for trial, v in found if v.kind in BROKEN)
+    counts = collections.Counter(verdict.kind for _, verdict in result)
+    broken = sorted((v.kind, told(trial), v.message) for trial, v in result if v.kind in BROKEN)
     return {
-        "trials": len(found),
-        "call forms": len({trial[0] for trial, _ in found}),
+        "trials": len(result),
+        "call forms": len({trial[0] for trial, _ in result}),
         "classes": {kind: counts[kind] for kind in (*GOOD, *BROKEN)},
-        "named": sum(verdict.named for _, verdict in found),
+        "named": sum(verdict.named for _, verdict in result),
         "broken": [{"class": kind, "trial": trial, "message": message} for kind, trial, message in broken],
     }
 
 
-def lines(found: dict[str, Any]) -> list[str]:
+def lines(result: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what broke."""
-    refused = found["classes"]["refused"]
-    head = f"{found['trials']} trials of {found['call forms']} call forms; "
-    head += f"{found['named']} of {refused} refusals name the changed argument"
-    table = [f"{kind:10} {count:6}" for kind, count in found["classes"].items()]
+    refused = result["classes"]["refused"]
+    head = f"{result['trials']} trials of {result['call forms']} call forms; "
+    head += f"{result['named']} of {refused} refusals name the changed argument"
+    table = [f"{kind:10} {count:6}" for kind, count in result["classes"].items()]
     again = "python tests/fuzz/api.py --only"
-    return [head, *table] + [f"{x['class']}: {again} '{x['trial']}'\n    {x['message']}" for x in found["broken"]]
+    return [head, *table] + [f"{x['class']}: {again} '{x['trial']}'\n    {x['message']}" for x in result["broken"]]
 
 
 def main() -> int:
@@ -57,10 +57,10 @@ def main() -> int:
     parser = options(__doc__, trials=3000, workers=1)
     parser.add_argument("--only", help="one trial: CALL: ARGUMENT = VALUE")
     parser.add_argument("--call", default="", help="only calls whose names begin so")
-    given = parser.parse_args()
-    calls = {name: call for name, call in all_calls().items() if name.startswith(given.call)}
-    trials = [from_text(given.only)] if given.only else draw(calls, given.trials, given.seed)
-    return int(bool(report(given, lambda: figures(verdicts(trials, given.workers)), lines)["broken"]))
+    arguments = parser.parse_args()
+    calls = {name: call for name, call in all_calls().items() if name.startswith(arguments.call)}
+    trials = [from_text(arguments.only)] if arguments.only else draw(calls, arguments.trials, arguments.seed)
+    return int(bool(report(arguments, lambda: figures(verdicts(trials, arguments.workers)), lines)["broken"]))
 
 
 if __name__ == "__main__":

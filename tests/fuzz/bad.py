@@ -19,16 +19,16 @@ class Unwilling:
 
 
 def _nested(depth: int) -> list[Any]:
-    found: list[Any] = [1.0]
+    result: list[Any] = [1.0]
     for _ in range(depth):
-        found = [found]
-    return found
+        result = [result]
+    return result
 
 
 def _in_itself() -> list[Any]:
-    found: list[Any] = [1.0]
-    found.append(found)
-    return found
+    result: list[Any] = [1.0]
+    result.append(result)
+    return result
 
 
 INTEGERS = ("10**400", "-10**400", "10**5000", "10**30", "2**63", "2**53", "10**12", "-1", "0")

@@ -40,10 +40,10 @@ class Call:
         return list(itertools.islice(result, _BLOCKS)) if self.name.startswith("iterate") else result
 
 
-def call(name: str, function: Callable[..., Any] | None = None, /, **given: Any) -> Call:
+def call(name: str, function: Callable[..., Any] | None = None, /, **arguments: Any) -> Call:
     """Return a call that works, by default of the public name: arguments, and which of slow, stores, infinite it is."""
-    flags = {flag: given.pop(flag, False) for flag in ("slow", "stores", "infinite")}
-    return Call(name, function or operator.attrgetter(name.partition(" [")[0])(nh), given, **flags)
+    flags = {flag: arguments.pop(flag, False) for flag in ("slow", "stores", "infinite")}
+    return Call(name, function or operator.attrgetter(name.partition(" [")[0])(nh), arguments, **flags)
 
 
 def slow(calls: list[Call]) -> list[Call]:
@@ -54,11 +54,11 @@ def slow(calls: list[Call]) -> list[Call]:
 def closed(draw: Callable[..., Any]) -> Callable[..., None]:
     """Return a function that draws a picture and closes it."""
 
-    def drawn(**given: Any) -> None:
+    def drawn(**arguments: Any) -> None:
         import matplotlib.pyplot as plt
 
         try:
-            draw(**given)
+            draw(**arguments)
         finally:
             plt.close("all")
 
@@ -91,10 +91,10 @@ NOT_CALLED = {
 
 def public_names() -> list[str]:
     """Return every public name, those of the rooms with the room before it."""
-    found = [name for name in dir(nh) if name not in ("examples", "plot", "testing")]
+    result = [name for name in dir(nh) if name not in ("examples", "plot", "testing")]
     for room in ("examples", "plot", "testing"):
-        found += [f"{room}.{name}" for name in getattr(nh, room).__all__]
-    return found
+        result += [f"{room}.{name}" for name in getattr(nh, room).__all__]
+    return result
 
 
 def is_picture(name: str) -> bool:

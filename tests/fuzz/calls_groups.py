@@ -14,21 +14,21 @@ _OF_MATRICES = ("log", "inverse", "adjoint", "pose_from_matrix")
 
 def groups() -> dict[str, nh.groups.AbstractMatrixGroup]:
     """Return one group of each kind."""
-    found = {f"SO({n})": nh.SO(n) for n in (2, 3, 4)} | {f"SE({n})": nh.SE(n) for n in (2, 3, 4)}
+    result = {f"SO({n})": nh.SO(n) for n in (2, 3, 4)} | {f"SE({n})": nh.SE(n) for n in (2, 3, 4)}
     product = nh.ProductGroup(nh.SE(2), nh.Translations(2))
-    return {**found, "Translations(3)": nh.Translations(3), "MatrixGroup": nh.MatrixGroup(_SL2), "product": product}
+    return {**result, "Translations(3)": nh.Translations(3), "MatrixGroup": nh.MatrixGroup(_SL2), "product": product}
 
 
 def calls() -> list[Call]:
     """Return the calls of this file."""
-    made = [
+    things = [
         call("SO", by_position(nh.SO), n=count(3)),
         call("SE", by_position(nh.SE), n=count(3)),
         call("Translations", by_position(nh.Translations), m=count(3)),
         call("MatrixGroup", by_position(nh.MatrixGroup), basis=array(_SL2, "any")),
         call("ProductGroup", by_position(nh.ProductGroup), one=thing(nh.SO(3)), other=thing(nh.SE(2))),
     ]
-    return made + [each for name, group in groups().items() for each in _methods(name, group)]
+    return things + [each for name, group in groups().items() for each in _methods(name, group)]
 
 
 def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
@@ -51,4 +51,4 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
         "leading_elements": {"g": array(g.value[None], "batch")},
         "random": {"rng": anything(np.random.default_rng(0))},
     }
-    return [call(f"{name}.{method}", getattr(group, method), **given) for method, given in arguments.items()]
+    return [call(f"{name}.{method}", getattr(group, method), **options) for method, options in arguments.items()]

@@ -44,19 +44,19 @@ def _inverse(name: str, discrete: nh.Discretization) -> Call:
 
 
 def _branches() -> list[Call]:
-    found = []
+    result = []
     for name, discrete, r in (("top", TOP, [0.1, 0.2]), ("sleigh", SLEIGH, [0.3, 0.4]), ("top 4", TOP_4, [0.1] * 3)):
-        system, asked = discrete.system, {"discrete": thing(discrete)}
+        system, arguments = discrete.system, {"discrete": thing(discrete)}
         W = {"displacement": array(system.group.exp(0.3 * system.constraint_subspace[0]))}
-        found += [
-            call(f"branches [{name}]", **asked, **W),
-            call(f"displacements_over [{name}]", **asked, restricted_momentum=array(r)),
-            call(f"fold_distance [{name}]", **asked, **W),
-            call(f"branch_tree [{name}]", **asked, **W, depth=integer(2)),
+        result += [
+            call(f"branches [{name}]", **arguments, **W),
+            call(f"displacements_over [{name}]", **arguments, restricted_momentum=array(r)),
+            call(f"fold_distance [{name}]", **arguments, **W),
+            call(f"branch_tree [{name}]", **arguments, **W, depth=integer(2)),
         ]
     sleigh, grown = {"discrete": thing(SLEIGH)}, {"energy": positive(500.0)}
     return [
-        *found,
+        *result,
         call("branches [certified]", **sleigh, momentum=array([0.3, 0.4]), certify=flag(True)),
         call("branch_growth", **sleigh, **grown),
         call("branch_growth [certified]", **sleigh, **grown, certify=flag(True)),

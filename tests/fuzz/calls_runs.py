@@ -31,41 +31,41 @@ def _velocity(discrete: nh.Discretization) -> np.ndarray:
 
 def _runs() -> list[Call]:
     forced = nh.Forced(TOP.system, nh.Gravity([0.0, 0.1, -1.0], [0.1, 0.0, 0.3]), nh.Friction([0.1, 0.2, 0.3]))
-    found = []
+    result = []
     for name, discrete in {**DISCRETE, "forced": nh.discretize(forced, 0.1)}.items():
         velocity = array(_velocity(discrete))
-        given = {"discrete": thing(discrete), "steps": count(5), "restricted_velocity": velocity}
+        arguments = {"discrete": thing(discrete), "steps": count(5), "restricted_velocity": velocity}
         flow = {"system": thing(discrete.system), "restricted_velocity": velocity, "times": _TIMES}
-        found += [
-            call(f"simulate [{name}]", **given, **_HOW),
-            call(f"iterate [{name}]", **given, block_steps=count(2, none=True)),
+        result += [
+            call(f"simulate [{name}]", **arguments, **_HOW),
+            call(f"iterate [{name}]", **arguments, block_steps=count(2, none=True)),
             call(f"flow [{name}]", **flow),
         ]
     stored = {"store": path("new.zarr", none=True), "checkpoint_every": count(2, none=True)}
-    given = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
-    return [*found, call("simulate [stored]", **given, **stored, scenario=text(None, True))]
+    arguments = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
+    return [*result, call("simulate [stored]", **arguments, **stored, scenario=text(None, True))]
 
 
 def _starts() -> list[Call]:
-    given, g = {"discrete": thing(TOP), "steps": count(5)}, nh.SO(3).exp(np.array([0.3, 0.2, 0.1]))
+    arguments, g = {"discrete": thing(TOP), "steps": count(5)}, nh.SO(3).exp(np.array([0.3, 0.2, 0.1]))
     W = nh.simulate(TOP, restricted_velocity=(0.3, 0.2), steps=1).displacement[0]
     P = nh.discrete_legendre(TOP, W)
     return [
-        call("simulate [body velocity]", **given, body_velocity=array([0.3, -0.2, 0.0])),
-        call("simulate [displacement]", **given, displacement=array(W), configuration=array(g)),
-        call("simulate [momentum]", **given, momentum=array(P)),
-        call("simulate [restricted]", **given, momentum=array([0.1, 0.2]), events=anything(None)),
+        call("simulate [body velocity]", **arguments, body_velocity=array([0.3, -0.2, 0.0])),
+        call("simulate [displacement]", **arguments, displacement=array(W), configuration=array(g)),
+        call("simulate [momentum]", **arguments, momentum=array(P)),
+        call("simulate [restricted]", **arguments, momentum=array([0.1, 0.2]), events=anything(None)),
     ]
 
 
 def _flows() -> list[Call]:
-    given, g = {"system": thing(SLEIGH.system), "times": _TIMES}, np.eye(3)
+    arguments, g = {"system": thing(SLEIGH.system), "times": _TIMES}, np.eye(3)
     how = {"rtol": positive(1e-8), "atol": positive(1e-10), "method": text(None, True), "configuration": array(g)}
     state = array([0.3, 0.4, *g.ravel()], "batch")
     return [
-        call("flow [options]", **given, **how, body_velocity=array([0.3, 0.4, 0.0]), reconstruct=flag(True)),
-        call("flow [momenta]", **given, momentum=array([0.3, 0.4]), reconstruct=flag(False)),
-        call("flow [momentum]", **given, momentum=array([0.3, 0.4])),
+        call("flow [options]", **arguments, **how, body_velocity=array([0.3, 0.4, 0.0]), reconstruct=flag(True)),
+        call("flow [momenta]", **arguments, momentum=array([0.3, 0.4]), reconstruct=flag(False)),
+        call("flow [momentum]", **arguments, momentum=array([0.3, 0.4])),
         call("vector_field", lambda system: nh.vector_field(system), system=thing(SLEIGH.system)),
         call("vector_field [value]", by_position(nh.vector_field(SLEIGH.system)), time=number(0.0), state=state),
     ]
@@ -73,16 +73,18 @@ def _flows() -> list[Call]:
 
 def _ensembles() -> list[Call]:
     starts = np.array([[0.3, -0.2], [0.1, 0.4], [0.2, 0.2]])
-    given = {"discrete": thing(TOP), "steps": count(5), "save_every": count(1, none=True)}
+    arguments = {"discrete": thing(TOP), "steps": count(5), "save_every": count(1, none=True)}
     how = {"reconstruct": flag(True), "backend": text("auto"), "progress": flag(False), "events": anything(None)}
     bodies, velocity = np.stack([J, J + 0.1 * np.eye(3), J]), array(starts, "rows")
     flows = {"discrete": thing(TOP.system), "times": _TIMES, "restricted_velocity": velocity}
     parameters = lambda mass_tensor, **rest: nh.ensemble(parameters={"mass_tensor": mass_tensor}, **rest)  # noqa: E731
     return [
-        call("ensemble", **given, restricted_velocity=velocity, parameters=anything(None), **how),
-        call("ensemble [momentum]", **given, momentum=velocity, reduce=function(None, none=True)),
+        call("ensemble", **arguments, restricted_velocity=velocity, parameters=anything(None), **how),
+        call("ensemble [momentum]", **arguments, momentum=velocity, reduce=function(None, none=True)),
         call("ensemble [flows]", **flows, rtol=positive(1e-8), reduce=function(None, none=True)),
-        call("ensemble [bodies]", parameters, **given, restricted_velocity=array(starts), mass_tensor=array(bodies)),
+        call(
+            "ensemble [bodies]", parameters, **arguments, restricted_velocity=array(starts), mass_tensor=array(bodies)
+        ),
         *(call(f"ensemble [{name}]", **_members(discrete)) for name, discrete in DISCRETE.items()),
     ]
 

@@ -85,12 +85,12 @@ def _forces() -> list[Call]:
 
 
 def _methods() -> list[Call]:
-    flat, found = nh.LLSystem(nh.SE(3), HOMOGENEOUS, FLAT_ROWS), []
+    flat, result = nh.LLSystem(nh.SE(3), HOMOGENEOUS, FLAT_ROWS), []
     for name, system in (("top", nh.SuslovTop(J)), ("sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.5)), ("flat", flat)):
         r = array([0.2, -0.3, 0.1][: system.rank], "batch", complex=True)
         p = array(0.1 + np.arange(system.group.dim), "batch", complex=True)
         either = array(r.value, "any", complex=True)  # r and p are distinguished by their length
-        found += [
+        result += [
             call(f"{name}.constrained_energy", system.constrained_energy, momentum=either),
             call(f"{name}.restrict", system.restrict, momentum=p),
             call(f"{name}.restricted_momentum", system.restricted_momentum, restricted_velocity=r),
@@ -100,8 +100,8 @@ def _methods() -> list[Call]:
             call(f"{name}.restrict_at", system.restrict_at, momentum=p),
         ]
     velocity, subspace = array(FLAT_ROWS[2]), array(FLAT_ROWS[2:], "rows")
-    found.append(call("flat.transverse_rates", flat.transverse_rates, velocity=velocity, subspace=subspace))
-    return found
+    result.append(call("flat.transverse_rates", flat.transverse_rates, velocity=velocity, subspace=subspace))
+    return result
 
 
 def _methods_in_space() -> list[Call]:
@@ -147,21 +147,21 @@ def _locomotion() -> list[Call]:
     def connection() -> Any:  # made when it is asked for: JAX compiles it
         return nh.local_connection(car.system)
 
-    drawn = closed(lambda **given: nh.plot.curvature(connection(), **given))
+    drawn = closed(lambda **arguments: nh.plot.curvature(connection(), **arguments))
     ranges, names = array([[-1.0, 1], [-1, 1]], none=True), anything(("psi", "phi"))
     drawing = {"component": text("omega"), "along": names, "bounds": ranges, "shape": array([0.0, 0.1], none=True)}
-    asked = {"system": thing(car.system), "configuration": array(car.configuration), "depth": count(2, none=True)}
+    arguments = {"system": thing(car.system), "configuration": array(car.configuration), "depth": count(2, none=True)}
     rows = lambda s: np.eye(3, 5) + 0 * s.sum()  # noqa: E731
     body = {"group": thing(nh.SO(3)), "shape_coordinates": anything(("a", "b")), "name": text("Satellite")}
     return [
         call("ShapedBody", **body, constraint_forms=function(rows), lagrangian=thing(None)),
-        call("accessibility", **asked),
+        call("accessibility", **arguments),
         call("geometric_phase", system=thing(car.system), gait=function(_still), **gait),
         call("local_connection", system=thing(car.system), pose=pose),
         call("connection.matrix", lambda shape: connection().matrix(shape), shape=shape),
         call("connection.curvature", lambda shape: connection().curvature(shape), shape=shape),
-        call("connection.body_velocity", lambda **given: connection().body_velocity(**given), **moving),
-        call("connection.momentum_rate", lambda **given: connection().momentum_rate(**given), **moving),
+        call("connection.body_velocity", lambda **arguments: connection().body_velocity(**arguments), **moving),
+        call("connection.momentum_rate", lambda **arguments: connection().momentum_rate(**arguments), **moving),
         call("plot.curvature", drawn, **drawing),
     ]
 
@@ -175,9 +175,9 @@ _ROWS = {"hitches"}
 
 def _examples() -> list[Call]:
     """Return the calls of ready systems, by their signatures."""
-    made = {f"examples.{name}": getattr(nh.examples, name) for name in nh.examples.__all__ if name != "Example"}
-    arguments = {name: signature(make).parameters.items() for name, make in made.items()}
-    return [call(name, **{each: _kind(kind) for each, kind in given}) for name, given in arguments.items()]
+    things = {f"examples.{name}": getattr(nh.examples, name) for name in nh.examples.__all__ if name != "Example"}
+    arguments = {name: signature(make).parameters.items() for name, make in things.items()}
+    return [call(name, **{each: _kind(kind) for each, kind in options}) for name, options in arguments.items()]
 
 
 def _kind(parameter: Parameter) -> Argument:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 
-def options(told: str, **numbers: int) -> argparse.ArgumentParser:
+def options(text: str, **numbers: int) -> argparse.ArgumentParser:
     """Return the options that fuzzers share, described by the first line of a docstring, and some numbers."""
-    parser = argparse.ArgumentParser(description=told.splitlines()[0])
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
     for name, usual in numbers.items():
         parser.add_argument(f"--{name}", type=int, default=usual)
     parser.add_argument("--seed", type=int, default=0)
@@ -25,12 +25,12 @@ def counted(rows: dict[str, dict[str, int]]) -> list[str]:
 
 
 def report(
-    given: argparse.Namespace, figures: Callable[[], dict[str, Any]], lines: Callable[[dict[str, Any]], list[str]]
+    arguments: argparse.Namespace, figures: Callable[[], dict[str, Any]], lines: Callable[[dict[str, Any]], list[str]]
 ) -> dict[str, Any]:
     """Make figures, print and write them; return them."""
     begin = time.monotonic()
-    found = figures() | {"seed": given.seed}
-    sys.stdout.write("\n".join(lines(found)) + f"\n{time.monotonic() - begin:.0f} s\n")
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
-    return found
+    result = figures() | {"seed": arguments.seed}
+    sys.stdout.write("\n".join(lines(result)) + f"\n{time.monotonic() - begin:.0f} s\n")
+    if arguments.json:
+        arguments.json.write_text(json.dumps(result, indent=1))
+    return result

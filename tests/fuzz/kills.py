@@ -82,18 +82,18 @@ def left_behind(folder: Path) -> list[str]:
     return locks + [str(path) for pattern in ("*.partial*", "lock*", "*.lock") for path in folder.rglob(pattern)]
 
 
-def in_a_child(do: Callable[..., Any], *given: Any) -> str:
+def in_a_child(do: Callable[..., Any], *arguments: Any) -> str:
     """Return the text that a function returns in a forked child, which may start threads."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        os.write(write, str(do(*given)).encode())
+        os.write(write, str(do(*arguments)).encode())
         os._exit(0)
     os.close(write)
-    with os.fdopen(read) as told:
-        text = told.read()
+    with os.fdopen(read) as report:
+        text = report.read()
     if os.waitpid(child, 0)[1] != 0:
-        raise RuntimeError(f"{do.__name__}{given} failed")
+        raise RuntimeError(f"{do.__name__}{arguments} failed")
     return text
 
 
@@ -182,14 +182,14 @@ def _compile(family: str, name: str) -> None:
 def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) -> dict[str, Any]:
     """Return the figures of all kinds of kills."""
     chosen = {family: tuple(x for x in names if only in (None, x)) for family, names in FAMILIES.items()}
-    found = {family: figures(family, trials, seed, names=names) for family, names in chosen.items() if names}
+    result = {family: figures(family, trials, seed, names=names) for family, names in chosen.items() if names}
     if not restarts:
-        return found
+        return result
     if not can_restart():
-        return {**found, "restarts": "skipped: process namespaces may not be made here"}
+        return {**result, "restarts": "skipped: process namespaces may not be made here"}
     halves = (restarts + 1) // 2, restarts // 2
     shares = zip(FAMILIES, halves, strict=True)
-    return found | {f"{family}, restarted": figures(family, half, seed, True) for family, half in shares}
+    return result | {f"{family}, restarted": figures(family, half, seed, True) for family, half in shares}
 
 
 def main() -> int:
@@ -197,17 +197,17 @@ def main() -> int:
     parser = options(__doc__, trials=20, restarts=10)
     parser.add_argument("--only", help="the name of one run or sweep")
     parser.add_argument("--go-on", nargs=3, metavar=("FAMILY", "NAME", "STORE"), help="what is killed")
-    given = parser.parse_args()
-    if given.go_on:
-        family, name, store = given.go_on
+    arguments = parser.parse_args()
+    if arguments.go_on:
+        family, name, store = arguments.go_on
         go_on(family, name, Path(store))
         return 0
-    found = all_figures(given.trials, given.restarts, given.seed, given.only)
-    for name, row in found.items():
+    result = all_figures(arguments.trials, arguments.restarts, arguments.seed, arguments.only)
+    for name, row in result.items():
         sys.stdout.write(f"{name}: {row}\n")
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=1))
-    return int(any(isinstance(row, dict) and row["wrong"] for row in found.values()))
+    if arguments.json:
+        arguments.json.write_text(json.dumps(result, indent=1))
+    return int(any(isinstance(row, dict) and row["wrong"] for row in result.values()))
 
 
 if __name__ == "__main__":

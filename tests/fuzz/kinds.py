@@ -72,8 +72,8 @@ def real_array(value: Any, nan: bool = False) -> np.ndarray | None:
 
 
 def _is_number(argument: Argument, value: Any) -> bool:
-    found = real_array(value)
-    return found is not None and found.shape == () and (argument.kind == "number" or bool(found > 0))
+    result = real_array(value)
+    return result is not None and result.shape == () and (argument.kind == "number" or bool(result > 0))
 
 
 def _is_integer(argument: Argument, value: Any) -> bool:
@@ -85,14 +85,14 @@ def _is_array(argument: Argument, value: Any) -> bool:
     wanted = argument.value.shape
     if argument.complex and isinstance(value, np.ndarray) and value.dtype.kind == "c":
         value = value.view(type=np.ndarray).real + value.imag
-    found = real_array(value, nan=argument.shape in ("batch", "stack"))
-    if found is None or (found.ndim == len(wanted) and np.isnan(found).any()):
+    result = real_array(value, nan=argument.shape in ("batch", "stack"))
+    if result is None or (result.ndim == len(wanted) and np.isnan(result).any()):
         return False
     if argument.shape == "batch":
-        return found.shape[max(0, found.ndim - len(wanted)) :] == wanted
+        return result.shape[max(0, result.ndim - len(wanted)) :] == wanted
     if argument.shape == "rows":
-        return found.shape == (0,) or (found.ndim == len(wanted) and found.shape[1:] == wanted[1:])
-    return argument.shape in ("any", "stack") or found.shape == wanted
+        return result.shape == (0,) or (result.ndim == len(wanted) and result.shape[1:] == wanted[1:])
+    return argument.shape in ("any", "stack") or result.shape == wanted
 
 
 _LEGAL: dict[str, Callable[[Argument, Any], bool]] = {

@@ -85,8 +85,8 @@ def prepared() -> Callable[[Trial], tuple[str, Verdict]]:
         key = trial.store, trial.opening
         if key not in expected:
             expected[key] = _tried(trial._replace(kind="none"), home)[1]
-        said, found = _tried(trial, home)
-        return said, found if isinstance(found, Verdict) else _compared(found, expected[key])
+        said, result = _tried(trial, home)
+        return said, result if isinstance(result, Verdict) else _compared(result, expected[key])
 
     return do
 
@@ -98,32 +98,32 @@ def _tried(trial: Trial, home: Path) -> tuple[str, dict[str, bytes] | Verdict]:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                found: dict[str, bytes] | Verdict = _OPENINGS[trial.family][trial.opening](store)
+                result: dict[str, bytes] | Verdict = _OPENINGS[trial.family][trial.opening](store)
         except Exception as failure:  # whatever comes is classified
-            found = of_exception(failure, [])
+            result = of_exception(failure, [])
         if Path("PWNED").exists():
-            found = Verdict("ran", "code of the store's choice ran")
+            result = Verdict("ran", "code of the store's choice ran")
         elif before != prints_of(_victim(store)):
-            found = Verdict("outside", "another store was changed")
-        return said, found
+            result = Verdict("outside", "another store was changed")
+        return said, result
 
 
 def _victim(store: Path) -> Path:
     return store.parent / "victim.zarr"
 
 
-def _compared(found: dict[str, bytes], expected: dict[str, bytes] | Verdict) -> Verdict:
+def _compared(result: dict[str, bytes], expected: dict[str, bytes] | Verdict) -> Verdict:
     if isinstance(expected, Verdict):
         return Verdict("silent", "accepted, though the whole store is refused")
-    other = sorted(name for name in found.keys() | expected.keys() if not _agree(name, found, expected))
+    other = sorted(name for name in result.keys() | expected.keys() if not _agree(name, result, expected))
     return Verdict("silent", f"other numbers: {', '.join(other)[:200]}") if other else Verdict("same")
 
 
-def _agree(name: str, found: dict[str, bytes], expected: dict[str, bytes]) -> bool:
+def _agree(name: str, result: dict[str, bytes], expected: dict[str, bytes]) -> bool:
     """Tell whether an entry is right: the table of a run that has lost a record ends there, with a warning."""
-    if name == "table" and found.get(name):
-        return expected[name].startswith(found[name])
-    return found.get(name) == expected.get(name)
+    if name == "table" and result.get(name):
+        return expected[name].startswith(result[name])
+    return result.get(name) == expected.get(name)
 
 
 @contextlib.contextmanager

@@ -127,8 +127,8 @@ def judge(case: Case, rng: np.random.Generator) -> collections.Counter[str]:
     _check_every_step(case, counts)
     begun = np.flatnonzero(done >= 0)[::4]
     chosen = rng.integers(0, done[begun] + 1)
-    asked = np.where(chosen[:, None] == 0, case.first[begun], _asked(case, begun, np.maximum(chosen, 1)))
-    _check_roots(case.equations, W[begun, chosen], asked, counts)
+    targets = np.where(chosen[:, None] == 0, case.first[begun], _asked(case, begun, np.maximum(chosen, 1)))
+    _check_roots(case.equations, W[begun, chosen], targets, counts)
     ended = np.flatnonzero(np.asarray(case.batch.outcome) != 0)
     last = np.where(done[ended, None] < 0, case.first[ended], _asked(case, ended, np.maximum(done[ended], 0) + 1))
     _check_refusals(case.equations, last, np.asarray(case.batch.outcome)[ended], counts)
@@ -194,26 +194,26 @@ def figures(steps: int, seed: int, families: tuple[str, ...] = tuple(FAMILIES)) 
         number = 0
         while counts["steps"] < steps / len(families):
             case = draw(family, np.random.default_rng([seed, at, number]))
-            found = judge(case, np.random.default_rng([seed, number]))
-            if any(found[name] for name in found if name.startswith(("wrong", "not finite", "refused though"))):
-                broken.append({"family": family, "case": [seed, at, number], "counts": dict(found)})
-            counts += found
+            result = judge(case, np.random.default_rng([seed, number]))
+            if any(result[name] for name in result if name.startswith(("wrong", "not finite", "refused though"))):
+                broken.append({"family": family, "case": [seed, at, number], "counts": dict(result)})
+            counts += result
             number += 1
         rows[family] = dict(counts)
     total = sum((collections.Counter(row) for row in rows.values()), collections.Counter())
     return {"all": dict(total), "families": rows, "broken": broken}
 
 
-def lines(found: dict[str, Any]) -> list[str]:
+def lines(result: dict[str, Any]) -> list[str]:
     """Return figures for people."""
-    return counted({**found["families"], "all": found["all"]}) + [f"broken: {row}" for row in found["broken"]]
+    return counted({**result["families"], "all": result["all"]}) + [f"broken: {row}" for row in result["broken"]]
 
 
 def main() -> int:
     """Run, check, print the figures."""
-    given = options(__doc__, steps=1_000_000).parse_args()
-    found = report(given, lambda: figures(given.steps, given.seed), lines)
-    return int(any(name.startswith(("wrong", "not finite")) for name in found["all"]))
+    arguments = options(__doc__, steps=1_000_000).parse_args()
+    result = report(arguments, lambda: figures(arguments.steps, arguments.seed), lines)
+    return int(any(name.startswith(("wrong", "not finite")) for name in result["all"]))
 
 
 if __name__ == "__main__":

@@ -33,28 +33,30 @@ def figures(chosen: list[Trial], workers: int) -> dict[str, Any]:
         if verdict.kind in WRONG:
             row = {"class": verdict.kind, "trial": ":".join(map(str, trial)), "what": said, "message": verdict.message}
             wrong.append(row)
-    rows = {name: {kind: found[kind] for kind in (*RIGHT, *WRONG)} for name, found in sorted(counts.items())}
+    rows = {name: {kind: result[kind] for kind in (*RIGHT, *WRONG)} for name, result in sorted(counts.items())}
     return {"openings": len(chosen), "classes": rows, "broken": sorted(wrong, key=lambda row: list(row.values()))}
 
 
-def lines(found: dict[str, Any]) -> list[str]:
+def lines(result: dict[str, Any]) -> list[str]:
     """Return figures for people, with a line that does again what went wrong."""
     again = "python tests/fuzz/stores.py --only"
-    broken = [f"{x['class']}: {again} '{x['trial']}'\n    {x['what']}\n    {x['message']}" for x in found["broken"]]
-    return [f"{found['openings']} openings", *counted(found["classes"]), *broken]
+    broken = [f"{x['class']}: {again} '{x['trial']}'\n    {x['what']}\n    {x['message']}" for x in result["broken"]]
+    return [f"{result['openings']} openings", *counted(result["classes"]), *broken]
 
 
 def main() -> int:
     """Draw trials or take the one that is asked for, do them, print the figures."""
     parser = options(__doc__, trials=200, workers=1)
     parser.add_argument("--only", help="one trial: FAMILY:STORE:KIND:SEED:OPENING")
-    given = parser.parse_args()
-    if given.only:
-        family, store, kind, seed, opening = given.only.split(":")
+    arguments = parser.parse_args()
+    if arguments.only:
+        family, store, kind, seed, opening = arguments.only.split(":")
         chosen = [Trial(family, store, kind, int(seed), opening)]
     else:
-        chosen = [t for family in FAMILIES for kind in KINDS for t in trials(family, kind, given.trials, given.seed)]
-    return int(bool(report(given, lambda: figures(chosen, given.workers), lines)["broken"]))
+        chosen = [
+            t for family in FAMILIES for kind in KINDS for t in trials(family, kind, arguments.trials, arguments.seed)
+        ]
+    return int(bool(report(arguments, lambda: figures(chosen, arguments.workers), lines)["broken"]))
 
 
 if __name__ == "__main__":

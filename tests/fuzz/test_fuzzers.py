@@ -29,8 +29,8 @@ import nonholo as nh
 def test_calls_with_bad_values_are_refused() -> None:
     """A few trials of each seed: none is raw, silent, hangs or aborts."""
     calls = {name: call for name, call in all_calls().items() if not (call.slow or call.stores)}
-    found = api.figures(api.verdicts(draw(calls, 60, seed=5), workers=1))
-    assert not found["broken"], api.lines(found)
+    result = api.figures(api.verdicts(draw(calls, 60, seed=5), workers=1))
+    assert not result["broken"], api.lines(result)
 
 
 @pytest.mark.profile("faults", instead="test_damaged_chunk_is_named")
@@ -39,8 +39,8 @@ def test_damaged_stores_are_refused_or_right(tmp_path: Path, monkeypatch: pytest
     chosen = [*openings.trials("orbit", "damage", 3, seed=2)[10:], *openings.trials("sweep", "damage", 1, seed=0)]
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     do = openings.prepared()
-    found = [(trial, *do(trial)) for trial in chosen]
-    assert not [row for row in found if row[-1].kind not in stores.RIGHT]
+    result = [(trial, *do(trial)) for trial in chosen]
+    assert not [row for row in result if row[-1].kind not in stores.RIGHT]
 
 
 @pytest.mark.profile("faults", instead="test_runs_cut_at_random_blocks_go_on")
@@ -50,17 +50,17 @@ def test_killed_runs_and_sweeps_go_on(tmp_path: Path) -> None:
     file = tmp_path / "kills.json"
     command = [sys.executable, kills.__file__, "--trials", "6", "--restarts", "0", "--json", str(file)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)  # noqa: S603  # it forks: a process without threads
-    for found in json.loads(file.read_text()).values():
-        assert found["killed"] >= 6
-        assert not found["wrong"]
+    for result in json.loads(file.read_text()).values():
+        assert result["killed"] >= 6
+        assert not result["wrong"]
 
 
 def test_random_steps_are_right() -> None:
     """Steps of a top and of a sleigh of any size solve their equation; sampled ones are on the principal branch."""
-    found = steps.figures(2000, seed=1, families=("top 3", "sleigh"))
-    assert not [name for name in found["all"] if name.startswith(("wrong", "not finite")) and found["all"][name]]
-    assert found["all"]["solve the equation"] == found["all"]["steps"] >= 2000
-    assert found["all"]["the root of the continuation"] > 10
+    result = steps.figures(2000, seed=1, families=("top 3", "sleigh"))
+    assert not [name for name in result["all"] if name.startswith(("wrong", "not finite")) and result["all"][name]]
+    assert result["all"]["solve the equation"] == result["all"]["steps"] >= 2000
+    assert result["all"]["the root of the continuation"] > 10
 
 
 @dataclasses.dataclass

@@ -79,8 +79,8 @@ def _folder(shelf_: Path | None) -> contextlib.AbstractContextManager[None]:
 
 
 def _has_nan(value: object) -> bool:
-    found = real_array(value, nan=True)
-    return found is not None and bool(np.isnan(found).any())
+    result = real_array(value, nan=True)
+    return result is not None and bool(np.isnan(result).any())
 
 
 def verdict(call: Call, changes: dict[str, str], usual: set[str]) -> Verdict:
@@ -92,9 +92,9 @@ def verdict(call: Call, changes: dict[str, str], usual: set[str]) -> Verdict:
             warnings.simplefilter("always")
             strange = nonfinite(call(**changed), infinite=call.infinite) - usual
     except Exception as failure:  # whatever comes is classified
-        found = of_exception(failure, list(changes))
-        theirs = found.kind == "raw" and not illegal and any(map(callable, changed.values()))
-        return Verdict("accepted", "an error of the function that was passed") if theirs else found
+        result = of_exception(failure, list(changes))
+        theirs = result.kind == "raw" and not illegal and any(map(callable, changed.values()))
+        return Verdict("accepted", "an error of the function that was passed") if theirs else result
     if illegal:
         return Verdict("silent", f"accepted, though {illegal[0]} is not legal")
     if not strange or any(map(_has_nan, changed.values())):

@@ -58,8 +58,8 @@ class Worker:
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        given = (self.target, theirs, self.addresses, self._folder.name)
-        self._process = context.Process(target=_work, args=given, daemon=True)
+        arguments = (self.target, theirs, self.addresses, self._folder.name)
+        self._process = context.Process(target=_work, args=arguments, daemon=True)
         self._process.start()
         theirs.close()
         if not self._pipe.poll(600.0) or self._pipe.recv() != "ready":
@@ -92,8 +92,8 @@ def answers(target: str, jobs: Iterable[Any], workers: int = 1, **limits: Any) -
     for job in jobs:
         waiting.put(job)
     total = waiting.qsize()
-    given = (target, limits, waiting, done)
-    feeders = [threading.Thread(target=_feed, args=given, daemon=True) for _ in range(workers)]
+    arguments = (target, limits, waiting, done)
+    feeders = [threading.Thread(target=_feed, args=arguments, daemon=True) for _ in range(workers)]
     for feeder in feeders:
         feeder.start()
     for _ in range(total):

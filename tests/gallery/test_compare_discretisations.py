@@ -16,18 +16,18 @@ SCRIPT = "docs/gallery/compare_discretisations.py"
 
 def test_matrix_and_skew_keep_everything(script: ModuleType) -> None:
     """Energy and the way back to rounding, order two."""
-    found = script.measured("matrix", "skew", 50)
-    assert np.ptp(found.energy) < 1e-14
-    assert found.reversal < 1e-13
-    assert abs(found.order - 2) < 0.1
+    result = script.measured("matrix", "skew", 50)
+    assert np.ptp(result.energy) < 1e-14
+    assert result.reversal < 1e-13
+    assert abs(result.order - 2) < 0.1
 
 
 def test_naive_keeps_nothing(script: ModuleType) -> None:
     """A tenth of the energy is lost in ten steps, the way back is refused, the order is one."""
-    found = script.measured("matrix", "naive", 20)
-    assert found.energy[-1] < -0.1
-    assert np.isnan(found.reversal)
-    assert abs(found.order - 1) < 0.1
+    result = script.measured("matrix", "naive", 20)
+    assert result.energy[-1] < -0.1
+    assert np.isnan(result.reversal)
+    assert abs(result.order - 1) < 0.1
 
 
 def test_the_four_constraints_differ(script: ModuleType) -> None:

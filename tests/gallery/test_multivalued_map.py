@@ -57,7 +57,7 @@ def test_folds_are_where_certified_counts_change() -> None:
     counts = []
     for size in module.numbers().values():
         sides = [nh.displacements_over(module.TOP, size * s * module.RAY, certify=True) for s in (1 - 1e-6, 1 + 1e-6)]
-        counts.append([int(np.count_nonzero(found.is_real)) for found in sides])
+        counts.append([int(np.count_nonzero(result.is_real)) for result in sides])
     assert counts == [[2, 4], [4, 2], [2, 0]]
 
 
@@ -74,14 +74,14 @@ def test_folds_of_the_picture_separate_counts() -> None:
 
 def test_portraits_print_closed_forms() -> None:
     """With J = m = 1, a = h = 1/2: E* = 2 m a^2 / h^2, a quarter of it in the paper, multiplier 9/11 at unit speed."""
-    found = script("multivalued_map_4_portraits").numbers()
-    assert np.isclose(found["the sleigh is single-valued below"], 2.0, rtol=1e-12)
-    assert np.isclose(found["bound of the paper"], 0.5, rtol=1e-12)
-    assert np.isclose(found["multiplier of the sleigh at energy 0.5"], 9 / 11, rtol=1e-12)
+    result = script("multivalued_map_4_portraits").numbers()
+    assert np.isclose(result["the sleigh is single-valued below"], 2.0, rtol=1e-12)
+    assert np.isclose(result["bound of the paper"], 0.5, rtol=1e-12)
+    assert np.isclose(result["multiplier of the sleigh at energy 0.5"], 9 / 11, rtol=1e-12)
 
 
 def test_turn_of_the_flow_is_one_turn() -> None:
     """J = 3 m a^2: the heading turns by 360 degrees; errors of the map fall fourfold with half the step."""
-    found = script("multivalued_map_7_limits").numbers()
-    assert np.isclose(found["turn of the flow, degrees"], 360.0, rtol=1e-12)
-    assert abs(found["ratio of the errors of h = 0.05 and h = 0.025"] - 4.0) < 0.01
+    result = script("multivalued_map_7_limits").numbers()
+    assert np.isclose(result["turn of the flow, degrees"], 360.0, rtol=1e-12)
+    assert abs(result["ratio of the errors of h = 0.05 and h = 0.025"] - 4.0) < 0.01

@@ -79,7 +79,9 @@ def test_a_card_is_true_and_drawn(name: str) -> None:
     """What it measures is within its tolerance of what is known; a figure with something in each of its axes."""
     found, figure = GALLERY.load(name).numbers(), GALLERY.load(name).draw()
     assert found
-    assert {what: value for what, (value, known, allowed) in found.items() if not abs(value - known) <= allowed} == {}
+    assert {
+        what: value for what, (value, reference, allowed) in found.items() if not abs(value - reference) <= allowed
+    } == {}
     assert isinstance(figure, Figure)
     assert all(axes.has_data() for axes in figure.axes)
     figure.canvas.draw()

@@ -25,12 +25,12 @@ def test_pictures_are_drawn_and_small(script: ModuleType, name: str, panels: int
 
 def test_the_pages_quote_the_numbers(script: ModuleType) -> None:
     """What the captions say is what the script prints, rounded."""
-    found = script.numbers()
-    odd = ", ".join(f"{found[f'odd part, {k} component']:g}" for k in ("first", "second"))
+    result = script.numbers()
+    odd = ", ".join(f"{result[f'odd part, {k} component']:g}" for k in ("first", "second"))
     quoted = {
-        "discrete-equations": [f"$s = {found['s at the fold']:.3f}$", f"{found['energy after the step']:.3f}"],
+        "discrete-equations": [f"$s = {result['s at the fold']:.3f}$", f"{result['energy after the step']:.3f}"],
         "energy-theorem": [f"$F_o = ({odd})$"],
-        "chaplygin-sleigh": [f"${found[f'angle {k}, degrees']:.1f}°$" for k in (1, 2, 3)],
+        "chaplygin-sleigh": [f"${result[f'angle {k}, degrees']:.1f}°$" for k in (1, 2, 3)],
     }
     for page, numbers in quoted.items():
         text = (scripts.ROOT / "docs" / "theory" / f"{page}.md").read_text()

@@ -89,7 +89,7 @@ def refined(y: np.ndarray, D: Any, J: Any, target: Any) -> list:
 def case(kind: str, parameters: dict, J: Any, D: Any, h: float, r: list[float], count: int) -> dict:
     """Return one case: a system, a momentum and the Cayley coordinates of every displacement over it."""
     J, D, target = exact(J), exact(D), exact(h) * exact(r)
-    rough = all_roots(*(given.astype(float) for given in (D, J, target)), count)
+    rough = all_roots(*(arguments.astype(float) for arguments in (D, J, target)), count)
     roots = [refined(y, D, J, target) for y in rough]
     print(kind, len(J), "real:", sum(all(abs(v[1]) < 1e-30 for v in y) for y in roots), flush=True)
     return {"system": kind, "parameters": parameters, "time_step": h, "momentum": r, "roots": roots}

@@ -123,11 +123,11 @@ def make_case(case: Case) -> dict[str, Any]:
         there[i], back[i] = numbers[i] + offset, numbers[i] - offset
         rows.append((end(case, there, roots) - end(case, back, roots)) / (2 * offset))
     print(case.name, len(rows), flush=True)
-    given = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
-    given |= {"friction": case.friction, "weight": case.weight} if case.friction else {}
-    given |= {"gains": case.gains} if case.gains else {}
-    found = {"end": decimals(here), "derivative": decimals(rows)}
-    return {"name": case.name, "steps": STEPS, **given, **found}
+    arguments = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
+    arguments |= {"friction": case.friction, "weight": case.weight} if case.friction else {}
+    arguments |= {"gains": case.gains} if case.gains else {}
+    result = {"end": decimals(here), "derivative": decimals(rows)}
+    return {"name": case.name, "steps": STEPS, **arguments, **result}
 
 
 TOP = [1.4, 0.2, 0.5, 1.0, -0.3, 0.9]

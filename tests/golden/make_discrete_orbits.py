@@ -56,10 +56,10 @@ def case_of(name: str, body: Any, velocity: list[float], time_step: float = 1.0)
 
 def made(name: str, body: Any, time_step: float, velocity: list[float]) -> dict[str, Any]:
     """Return the entry of an orbit."""
-    case, told = case_of(name, body, velocity, time_step)
+    case, report = case_of(name, body, velocity, time_step)
     entry = make_case(case)
-    told |= {"time_step": time_step, "body_velocity": velocity, "configuration": case.configuration}
-    return told | {key: entry[key] for key in ("displacement", "momentum", "multipliers", "configurations")}
+    report |= {"time_step": time_step, "body_velocity": velocity, "configuration": case.configuration}
+    return report | {key: entry[key] for key in ("displacement", "momentum", "multipliers", "configurations")}
 
 
 def main() -> None:

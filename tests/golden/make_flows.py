@@ -36,8 +36,8 @@ def table(case: Any, unit: int) -> dict[str, Any]:
     basis, tensor, nothing = exact(algebra(case.group)), homogeneous(case.parameters), [0.0] * case.n
     motion = Motion(("", case.group, tensor, case.constraint_subspace, [], nothing, nothing, []))
     every = [k / unit for k in range(int(TIMES[-1] * unit) + 1)]
-    found = motion.solved(case.restricted_velocity, unit, every)
-    states = [[exact(number.tolist()) * mp.ldexp(1, -BITS) for number in state] for state in found]
+    result = motion.solved(case.restricted_velocity, unit, every)
+    states = [[exact(number.tolist()) * mp.ldexp(1, -BITS) for number in state] for state in result]
     inertia = inertia_operator(basis, tensor)
     turns = [mpf(0)]
     for (_, before), (_, after) in pairwise(states):
@@ -59,19 +59,19 @@ def table(case: Any, unit: int) -> dict[str, Any]:
 
 def made(name: str, body: Any, velocity: list[float]) -> dict[str, Any]:
     """Return the entry of a motion; raise if energy, group, heading or a second step is off."""
-    case, told = case_of(name, body, velocity)
-    found, finer = (table(case, unit) for unit in STEPS)
-    energy, poses, defects = found["energy"], found["configurations"], {}
+    case, report = case_of(name, body, velocity)
+    result, finer = (table(case, unit) for unit in STEPS)
+    energy, poses, defects = result["energy"], result["configurations"], {}
     defects["energy"] = np.abs(energy / energy[0] - 1).max()
     defects["group"] = max(group_defect(case.n, g) for g in poses)
-    headings = zip(found.get("heading", []), poses, strict=False)
+    headings = zip(result.get("heading", []), poses, strict=False)
     defects["heading"] = max((abs(mp.cos(x) - g[0, 0]) + abs(mp.sin(x) - g[1, 0]) for x, g in headings), default=0)
-    defects["step halving"] = max(np.abs(found[key] - finer[key]).max() for key in found)
+    defects["step halving"] = max(np.abs(result[key] - finer[key]).max() for key in result)
     for what, defect in defects.items():
         require(defect, f"{name} {what}", mpf(10) ** -45)
     print(name, *(mp.nstr(mpf(defect), 2) for defect in defects.values()), flush=True)
-    told |= {"body_velocity": velocity, "configuration": case.configuration, "times": TIMES}
-    return told | {key: decimals(found[key]) for key in found if key != "energy"}
+    report |= {"body_velocity": velocity, "configuration": case.configuration, "times": TIMES}
+    return report | {key: decimals(result[key]) for key in result if key != "energy"}
 
 
 def main() -> None:

@@ -87,16 +87,16 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
     coordinates = [*angles, *places]
     kane = mechanics.KanesMethod(space, coordinates, speeds, kd_eqs=kinematics, u_auxiliary=spare)
     kane.kanes_equations([rigid], loads)
-    known, changes = kane.kindiffdict(), sympy.symbols(f"r:{len(speeds)}")
+    reference, changes = kane.kindiffdict(), sympy.symbols(f"r:{len(speeds)}")
     names = sympy.symbols(f"s:{len(coordinates) + len(speeds)}")
     plain = dict(zip([*coordinates, *speeds], names, strict=True))
     reaction = kane.auxiliary_eqs.subs({u.diff(dot): r for u, r in zip(speeds, changes, strict=True)})
-    moved = sympy.Matrix([known[x.diff(dot)] for x in coordinates])
+    moved = sympy.Matrix([reference[x.diff(dot)] for x in coordinates])
     free = dict.fromkeys(lam, 0)
     matrices = moved, kane.mass_matrix, kane.forcing, reaction
-    moved, mass, forcing, reaction = (each.subs(known).subs(plain) for each in matrices)
+    moved, mass, forcing, reaction = (each.subs(reference).subs(plain) for each in matrices)
     field = sympy.lambdify([names, TIME], [moved, mass, forcing.subs(free)], cse=True)
-    held = sympy.lambdify([names, changes, TIME], [reaction.jacobian(lam), reaction.subs(free)], cse=True)
+    equations = sympy.lambdify([names, changes, TIME], [reaction.jacobian(lam), reaction.subs(free)], cse=True)
     turned = sympy.lambdify([names], space.dcm(frame).subs(plain), cse=True)
 
     def rate(time: float, y: np.ndarray) -> np.ndarray:
@@ -104,7 +104,7 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
         return np.concatenate([np.ravel(first), np.ravel(np.linalg.solve(M, f))])
 
     def multipliers(time: float, y: np.ndarray) -> np.ndarray:
-        slope, rest = held(y, rate(time, y)[-len(speeds) :], time)
+        slope, rest = equations(y, rate(time, y)[-len(speeds) :], time)
         return -np.ravel(np.linalg.solve(slope, rest))
 
     return rate, multipliers, turned
@@ -116,11 +116,11 @@ def solved(name: str) -> dict[str, Any]:
     rate, multipliers, turned = equations(body, acting)
     k, size = len(velocity), 3 if body["fixed"] else 6
     start = np.concatenate([np.zeros(size), velocity])
-    found = solve_ivp(rate, (0.0, TIMES[-1]), start, "DOP853", TIMES, rtol=1e-13, atol=1e-15).y.T
-    lam = [multipliers(time, y) for time, y in zip(TIMES, found, strict=True)]
-    velocities, reactions = found[:, -k:] @ np.array(body["free"]), np.array(lam) @ np.array(body["held"])
+    result = solve_ivp(rate, (0.0, TIMES[-1]), start, "DOP853", TIMES, rtol=1e-13, atol=1e-15).y.T
+    lam = [multipliers(time, y) for time, y in zip(TIMES, result, strict=True)]
+    velocities, reactions = result[:, -k:] @ np.array(body["free"]), np.array(lam) @ np.array(body["held"])
     columns = {"body_velocities": velocities, "reactions": reactions}
-    columns |= {"rotations": np.array([turned(y) for y in found]), "places": found[:, 3:size]}
+    columns |= {"rotations": np.array([turned(y) for y in result]), "places": result[:, 3:size]}
     return {"name": name, "body": body, "acting": acting} | {key: rows.tolist() for key, rows in columns.items()}
 
 

@@ -193,12 +193,12 @@ def at(case: Case, equations: Equations, g: Array) -> Equations:
 
 def multipliers(annihilator: Array, difference: Array) -> Array:
     """Return the coefficients of a covector in rows of the annihilator; raise if it is not spanned by them."""
-    found = np.zeros(0, dtype=object)
+    result = np.zeros(0, dtype=object)
     if len(annihilator):
         gram = mp.matrix((annihilator @ annihilator.T).tolist())
-        found = exact(list(mp.lu_solve(gram, mp.matrix((annihilator @ difference).tolist()))))
-    require(np.abs(difference - annihilator.T @ found).max(), "step equation", mpf(10) ** (8 - mp.dps))
-    return found
+        result = exact(list(mp.lu_solve(gram, mp.matrix((annihilator @ difference).tolist()))))
+    require(np.abs(difference - annihilator.T @ result).max(), "step equation", mpf(10) ** (8 - mp.dps))
+    return result
 
 
 def energy(inertia: Array, rows: Array, p: Array) -> Number:
@@ -218,7 +218,7 @@ def orbit(case: Case, verify: bool) -> dict[str, list[Any]]:
     target = here.rows @ inertia @ here.rows.T @ exact(case.restricted_velocity)
     x = principal(here, target)
     names = ("logarithm", "displacement", "momentum", "configurations", "energy", "multipliers")
-    found: dict[str, list[Any]] = {name: [] for name in names}
+    result: dict[str, list[Any]] = {name: [] for name in names}
     carried: list[Array] = []
     for step in range(STEPS + 1):
         x = solve(here, target, x)
@@ -229,14 +229,14 @@ def orbit(case: Case, verify: bool) -> dict[str, list[Any]]:
         p = momentum(equations, w)
         values = (x, w, p, g, energy(inertia, here.rows, p))
         for name, value in zip(names, values, strict=False):
-            found[name].append(value)
+            result[name].append(value)
         if step:
-            found["multipliers"].append(multipliers(here.annihilator, p - carried[-1]))
+            result["multipliers"].append(multipliers(here.annihilator, p - carried[-1]))
         carried.append(adjoint(basis, w, displacement(basis, -x)).T @ p)
         g = g @ w
         here = at(case, equations, g)
         target = here.rows @ carried[-1]
-    return found
+    return result
 
 
 def group_defect(n: int, g: Array) -> Number:
@@ -246,27 +246,27 @@ def group_defect(n: int, g: Array) -> Number:
     return max(abs(defect) for defect in defects)
 
 
-def constraint_defect(case: Case, found: dict[str, list[Any]]) -> Number:
+def constraint_defect(case: Case, result: dict[str, list[Any]]) -> Number:
     """Return how far displacements are from the skew equation, in space for a Veselova top, or from exp d."""
     equations = case.equations()
     if not len(equations.annihilator):
         return mpf(0)
     skew = replace(equations, skew=exact(1)) if case.constraint == "skew" else equations
     largest = mpf(0)
-    for x, g in zip(found["logarithm"], found["configurations"], strict=True):
+    for x, g in zip(result["logarithm"], result["configurations"], strict=True):
         here = at(case, skew, g)
         largest = max(largest, np.abs(here.annihilator @ inclination(here, x)).max())
     return largest
 
 
-def spatial_defect(case: Case, found: dict[str, list[Any]]) -> Number:
+def spatial_defect(case: Case, result: dict[str, list[Any]]) -> Number:
     """Return the change of the spatial momentum, along d for a Veselova top; zero where it is not conserved."""
     if case.system not in ("veselova", "rigid_body"):
         return mpf(0)
     equations = case.equations()
     basis = equations.basis
     restricted = []
-    for p, w, g in zip(found["momentum"], found["displacement"], found["configurations"], strict=True):
+    for p, w, g in zip(result["momentum"], result["displacement"], result["configurations"], strict=True):
         back = inverse_of(g)
         spatial = adjoint(basis, back, g).T @ p
         restricted.append(equations.rows @ spatial)
@@ -277,9 +277,9 @@ def spatial_defect(case: Case, found: dict[str, list[Any]]) -> Number:
     return np.abs(np.array(restricted) - restricted[0]).max()
 
 
-def drift(case: Case, found: dict[str, list[Any]]) -> Number:
+def drift(case: Case, result: dict[str, list[Any]]) -> Number:
     """Return the relative change of energy; zero stands for a change that the theory expects and that is seen."""
-    change = max(abs(e / found["energy"][0] - 1) for e in found["energy"])
+    change = max(abs(e / result["energy"][0] - 1) for e in result["energy"])
     if case.constraint == "skew" and case.system != "veselova":
         return change
     if change < mpf(10) ** -6:
@@ -287,23 +287,23 @@ def drift(case: Case, found: dict[str, list[Any]]) -> Number:
     return mpf(0)
 
 
-def precision(case: Case, found: dict[str, list[Any]]) -> Number:
+def precision(case: Case, result: dict[str, list[Any]]) -> Number:
     """Return the largest difference from the same orbit in 15 more digits."""
     with mp.workdps(DIGITS + 15):
         again = orbit(case, verify=False)
         names = ("momentum", "multipliers", "displacement", "configurations")
-        return max(np.abs(np.array(found[name]) - np.array(again[name])).max(initial=mpf(0)) for name in names)
+        return max(np.abs(np.array(result[name]) - np.array(again[name])).max(initial=mpf(0)) for name in names)
 
 
-def check(case: Case, found: dict[str, list[Any]]) -> list[Number]:
+def check(case: Case, result: dict[str, list[Any]]) -> list[Number]:
     """Return defects of energy, constraint, group, spatial momentum, and against more digits; raise if large."""
-    matrices = [*found["displacement"], *found["configurations"]]
+    matrices = [*result["displacement"], *result["configurations"]]
     defects = {
-        "energy": drift(case, found),
-        "constraint": constraint_defect(case, found),
+        "energy": drift(case, result),
+        "constraint": constraint_defect(case, result),
         "group": max(group_defect(case.n, g) for g in matrices),
-        "spatial momentum": spatial_defect(case, found),
-        "precision": precision(case, found),
+        "spatial momentum": spatial_defect(case, result),
+        "precision": precision(case, result),
     }
     for what, defect in defects.items():
         require(defect, f"{case.system} {case.name} {what}", mpf(TOLERANCE))
@@ -318,19 +318,19 @@ def largest_angle(w: Array) -> float:
 def make_case(case: Case) -> dict[str, Any]:
     """Compute and check one orbit, print angles and defects; return its entry for the file."""
     began = time.perf_counter()
-    found = orbit(case, verify=True)
-    defects = check(case, found)
-    angles = [largest_angle(w) for w in found["displacement"]]
-    change = max(abs(e / found["energy"][0] - 1) for e in found["energy"])
+    result = orbit(case, verify=True)
+    defects = check(case, result)
+    angles = [largest_angle(w) for w in result["displacement"]]
+    change = max(abs(e / result["energy"][0] - 1) for e in result["energy"])
     figures = " ".join(str(mp.nstr(defect, 2)) for defect in [change, *defects])
     turn = f"{min(angles):.0f}..{max(angles):.0f} degrees"
     seconds = time.perf_counter() - began
     print(f"{case.system} {case.name} h={case.time_step}: {turn}, {figures}, {seconds:.1f} s", flush=True)
     if case.system == "veselova":
-        pairs = zip(found["configurations"], found["displacement"], strict=True)
-        found["spatial_displacement"] = [g @ w @ inverse_of(g) for g, w in pairs]
-    del found["logarithm"]
-    return vars(case) | {key: decimals(value) for key, value in found.items()}
+        pairs = zip(result["configurations"], result["displacement"], strict=True)
+        result["spatial_displacement"] = [g @ w @ inverse_of(g) for g, w in pairs]
+    del result["logarithm"]
+    return vars(case) | {key: decimals(value) for key, value in result.items()}
 
 
 def remaining(rows: list[list[int]]) -> list[list[int]]:
@@ -403,7 +403,7 @@ def draw_parameters(draw: np.random.RandomState, system: str, n: int, size: int)
 
 def cases() -> list[Case]:
     """Draw the inputs; the stream of RandomState is the same in every version of NumPy."""
-    found = []
+    result = []
     for seed, (system, group, constraint, rows, annihilator, runs) in enumerate(PROBLEMS):
         draw = np.random.RandomState(seed)
         n, basis = int(group[3:-1]), algebra(group)
@@ -415,8 +415,8 @@ def cases() -> list[Case]:
                 velocity[-1] = -math.copysign(velocity[-1], parameters["center_of_mass"][0])
             pose = draw_configuration(draw, n, size)
             name = f"{group[:2]}{n}-{constraint}" if system == "left_invariant" else f"{group[:2]}{n}"
-            found.append(Case(system, name, group, parameters, rows, annihilator, constraint, h, velocity, pose))
-    return found
+            result.append(Case(system, name, group, parameters, rows, annihilator, constraint, h, velocity, pose))
+    return result
 
 
 def require_no_symmetric_pair() -> None:

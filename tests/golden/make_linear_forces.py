@@ -67,8 +67,8 @@ class Motion:
         ws, gs = [w], [g]
         for j in range(ORDER):
             pairs = sum(np.multiply.outer(ws[i], ws[j - i]) for i in range(j + 1)) >> BITS
-            seen = (self.force @ gs[j]) >> BITS
-            rate = np.tensordot(pairs, self.torques, 2) + self.levers @ seen - self.friction @ ws[j]
+            force = (self.force @ gs[j]) >> BITS
+            rate = np.tensordot(pairs, self.torques, 2) + self.levers @ force - self.friction @ ws[j]
             moves = [np.tensordot(x, self.hats, 1) >> BITS for x in ws]
             turned = sum(gs[i] @ moves[j - i] for i in range(j + 1)) >> BITS
             ws.append(((rate >> BITS) >> shift) // (j + 1))
@@ -77,13 +77,13 @@ class Motion:
 
     def solved(self, velocity: list[float], a_unit: int, times: Sequence[float] = TIMES) -> list[tuple[Any, Any]]:
         """Return velocities and poses at the times."""
-        w, g, found = whole(velocity), whole(np.eye(self.size)), []
+        w, g, result = whole(velocity), whole(np.eye(self.size)), []
         for step in range(int(times[-1] * a_unit) + 1):
             if step / a_unit in times:
-                found.append((w, g))
+                result.append((w, g))
             ws, gs = self.expanded(w, g, a_unit.bit_length() - 1)
             w, g = sum(ws[1:], ws[0]), sum(gs[1:], gs[0])
-        return found
+        return result
 
     def energy(self, w: Any, g: Any) -> Any:
         """Return T + U."""
@@ -97,15 +97,15 @@ def main() -> None:
     for case in CASES:
         begun, (name, group, tensor, rows, velocity, F, point, C) = time.time(), case
         motion = Motion(case)
-        found, other = (motion.solved(velocity, unit) for unit in STEPS)
+        result, other = (motion.solved(velocity, unit) for unit in STEPS)
         bound = mpf(10) ** -45
-        for one, two in zip(found, other, strict=True):
+        for one, two in zip(result, other, strict=True):
             gap = max(np.abs(a - b).max() for a, b in zip(one, two, strict=True))
             require(mp.ldexp(mpf(gap), -BITS), f"{name}: two lengths of steps", bound)
             if not C:
-                change = motion.energy(*one) - motion.energy(*found[0])
+                change = motion.energy(*one) - motion.energy(*result[0])
                 require(mp.ldexp(mpf(abs(change)), -BITS), f"{name}: energy", bound)
-        states = [[decimals(number * mp.ldexp(1, -BITS)) for number in state] for state in found]
+        states = [[decimals(number * mp.ldexp(1, -BITS)) for number in state] for state in result]
         written.append(
             {"name": name, "group": group, "mass_tensor": tensor, "constraint_subspace": rows, "friction": C}
             | {"force": F, "point": point, "restricted_velocity": velocity, "times": TIMES}

@@ -48,8 +48,8 @@ def exact(nested: Any) -> Array:
 def coordinates(basis: Array, x: Array) -> Array:
     """Return the coordinates of a matrix, or of a stack of matrices, in an orthogonal basis."""
     flat = basis.reshape(len(basis), -1)
-    found = x.reshape(*x.shape[:-2], -1) @ flat.T
-    return found / (flat * flat).sum(axis=1)
+    result = x.reshape(*x.shape[:-2], -1) @ flat.T
+    return result / (flat * flat).sum(axis=1)
 
 
 def inverse_of(g: Array) -> Array:

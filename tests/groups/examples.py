@@ -22,9 +22,9 @@ OTHERS = [HEISENBERG, SL2, SL3, OBLIQUE, Translations(3), WHEELED, TWO_BODIES, P
 GROUPS = [*RIGID, *OTHERS]
 
 
-def close(found: np.ndarray, expected: np.ndarray, ulps: float = 100) -> bool:
+def close(result: np.ndarray, expected: np.ndarray, ulps: float = 100) -> bool:
     """Tell whether arrays agree to some rounding errors of their size."""
-    return bool(np.abs(found - expected).max() <= ulps * np.finfo(float).eps * (1 + np.abs(expected).max()))
+    return bool(np.abs(result - expected).max() <= ulps * np.finfo(float).eps * (1 + np.abs(expected).max()))
 
 
 def vectors(group: AbstractMatrixGroup, count: int, scale: float = 1.0, seed: int = 0) -> np.ndarray:

@@ -38,16 +38,16 @@ def test_exp_increment_keeps_relative_accuracy(group: AbstractMatrixGroup, scale
 def test_log_inverts_exp(group: AbstractMatrixGroup, scale: float) -> None:
     """log(exp(x)) = x while angles stay below pi; of small motions of SO(n) and SE(n) to relative precision."""
     x = vectors(group, 20, scale)
-    found = group.log(group.exp(x))
-    assert np.abs(found - x).max() <= 1e-23 if group.is_rigid and scale == 1e-9 else close(found, x)
+    result = group.log(group.exp(x))
+    assert np.abs(result - x).max() <= 1e-23 if group.is_rigid and scale == 1e-9 else close(result, x)
 
 
 @every_group
 def test_hat_and_vee_are_inverse(group: AbstractMatrixGroup) -> None:
     """vee(hat(x)) = x for every basis, on SO(n) and SE(n) to the bit, and hat is the sum over the basis."""
     x = vectors(group, 7)
-    found = group.vee(group.hat(x))
-    assert np.array_equal(found, x) if group.is_rigid else close(found, x, 20)
+    result = group.vee(group.hat(x))
+    assert np.array_equal(result, x) if group.is_rigid else close(result, x, 20)
     assert close(group.hat(x), np.einsum("ki,iab->kab", x, group.basis), 4)
 
 

@@ -35,9 +35,9 @@ def test_log_of_rotations_and_motions(n: int, angles: list[float]) -> None:
     """exp(log(g)) = g to rounding, with a translation too; the angles of log(R) are those of R, all at most pi."""
     group, R, g = SO(n), turned(n, angles), np.eye(n + 1)
     x = group.log(R)
-    found = np.sort(np.linalg.eigvalsh(1j * group.hat(x)))[::-1][: len(angles)]
+    result = np.sort(np.linalg.eigvalsh(1j * group.hat(x)))[::-1][: len(angles)]
     assert close(group.exp(x), R, 40)
-    assert np.abs(found - np.sort(np.abs(angles))[::-1]).max() < 1e-14
+    assert np.abs(result - np.sort(np.abs(angles))[::-1]).max() < 1e-14
     g[:n, :n], g[:n, n] = R, np.arange(1.0, n + 1)
     assert close(SE(n).exp(SE(n).log(g)), g, 100)
 
@@ -131,8 +131,8 @@ def test_dexp_inverse_holds_at_large_angles(group: AbstractMatrixGroup) -> None:
 @pytest.mark.parametrize("group", GROUPS, ids=str)
 def test_dexp_inverse_is_the_bernoulli_series(group: AbstractMatrixGroup) -> None:
     """Sum B_k ad^k / k!, with B_1 = -1/2; sixty terms are exact for ad of norm below 3."""
-    for ad, found in zip(group.ad(x := vectors(group, 4, 0.3)), group.dexp_inverse(x), strict=True):
+    for ad, result in zip(group.ad(x := vectors(group, 4, 0.3)), group.dexp_inverse(x), strict=True):
         power, total = np.eye(group.dim), np.zeros_like(ad)
         for k, number in enumerate(bernoulli(60)):
             total, power = total + number * power / math.factorial(k), power @ ad
-        assert close(found, total, 200)
+        assert close(result, total, 200)

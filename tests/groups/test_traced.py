@@ -45,9 +45,9 @@ def _everything(group: AbstractMatrixGroup, x: jax.Array) -> dict[str, jax.Array
 def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None:
     """One jit over everything, the group a static argument, on several points at once."""
     x = vectors(group, 4, 0.6)
-    found = jax.jit(_everything, static_argnums=0)(group, jnp.asarray(x))
+    result = jax.jit(_everything, static_argnums=0)(group, jnp.asarray(x))
     for name, expected in _everything(group, x).items():
-        assert close(np.asarray(found[name]), expected, 300), name
+        assert close(np.asarray(result[name]), expected, 300), name
 
 
 @pytest.mark.profile("routes", keep=["0.0"])
@@ -71,8 +71,8 @@ def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: floa
     """Accurate to rounding times the condition of I + W, which is 50 at angle 3.1, and relative near the identity."""
     x = vectors(group, 10)
     x = x * (angle / group.angle(x))[:, None]
-    found = np.asarray(jax.jit(group.log)(jnp.asarray(group.exp(x))))
-    assert np.abs(found - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
+    result = np.asarray(jax.jit(group.log)(jnp.asarray(group.exp(x))))
+    assert np.abs(result - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
 
 
 @pytest.mark.profile("routes", keep=["forward-SO(3)", "reverse-ProductGroup*"])
@@ -85,8 +85,8 @@ def test_derivatives_at_the_identity(group: AbstractMatrixGroup, derivative: obj
     through = jax.jit(derivative(lambda v: (group.log(group.exp(v)), group.log(group.retract(v)))))(
         jnp.zeros(group.dim)
     )
-    for found in through:
-        assert close(np.asarray(found), np.eye(group.dim), 20)
+    for result in through:
+        assert close(np.asarray(result), np.eye(group.dim), 20)
 
 
 @pytest.mark.profile("routes", keep=["SO(3)"])
@@ -97,8 +97,8 @@ def test_higher_derivatives_beside_the_identity(group: AbstractMatrixGroup) -> N
     second = jax.jacfwd(jax.jacfwd(lambda t, x: group.log(group.exp(x + t * way))))
     both = jax.jit(lambda x: (second(0.0, x), jax.jacfwd(second)(0.0, x)))
     for size in (0.0, 1e-100, 1e-12, 1e-8, 1e-4, 0.01, 0.1):
-        for order, found in zip((2, 3), both(size * x), strict=True):  # of quotients that lose digits
-            assert np.abs(np.asarray(found)).max() < 1e-14 / max(size, 0.003) ** (order - 1)
+        for order, result in zip((2, 3), both(size * x), strict=True):  # of quotients that lose digits
+            assert np.abs(np.asarray(result)).max() < 1e-14 / max(size, 0.003) ** (order - 1)
 
 
 @pytest.mark.profile("routes", keep=["SE(3)"])
@@ -107,5 +107,5 @@ def test_derivative_of_the_traced_logarithm(group: AbstractMatrixGroup) -> None:
     """Automatic differentiation of log at a general point is dexp^-1."""
     x = vectors(group, 1, 0.7)[0]
     g = jnp.asarray(group.exp(x))
-    found = jax.jit(jax.jacfwd(lambda d: group.log(group.exp(d) @ g)))(jnp.zeros(group.dim))
-    assert close(np.asarray(found), group.dexp_inverse(x), 1000)
+    result = jax.jit(jax.jacfwd(lambda d: group.log(group.exp(d) @ g)))(jnp.zeros(group.dim))
+    assert close(np.asarray(result), group.dexp_inverse(x), 1000)

@@ -72,9 +72,9 @@ def test_other_groups_have_the_entries_of_the_matrix(group: Any, position: int, 
     names, rows = _read(_written(orbit, tmp_path))
     entries = [f"r{i}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
     assert names == ["t", *(f"x{i}" for i in range(1, position + 1)), *entries]
-    found = orbit.configuration
-    assert np.array_equal(rows[:, 1 : 1 + position], found[:, :position, -1])
-    assert np.array_equal(rows[:, 1 + position :], found[:, :size, :size].reshape(3, -1))
+    result = orbit.configuration
+    assert np.array_equal(rows[:, 1 : 1 + position], result[:, :position, -1])
+    assert np.array_equal(rows[:, 1 + position :], result[:, :size, :size].reshape(3, -1))
 
 
 def test_entries_from_ten_rows_on_are_told_apart(tmp_path: Path) -> None:
@@ -137,13 +137,13 @@ def test_callable_difference_is_no_obstacle(tmp_path: Path) -> None:
 @pytest.mark.parametrize("block", [0, 1, 5])
 def test_unfinished_store_gives_its_finished_blocks(block: int, tmp_path: Path) -> None:
     """What a stopped run finished is exported, and a warning says how far it goes and how to resume."""
-    path, given = tmp_path / "run.zarr", {"save_every": 2, **SPIN}
+    path, arguments = tmp_path / "run.zarr", {"save_every": 2, **SPIN}
     with stopped_at(block):
-        nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **given)
+        nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **arguments)
     last = max(0, 16 * block - 2)
     with pytest.warns(RuntimeWarning, match=rf"up to step {last} of 99\. Resume with nonholo\.resume\('.*run\.zarr'\)"):
         text = _of_store(path)
-    whole = _written(nh.simulate(SPINNING, steps=99, **given), tmp_path)
+    whole = _written(nh.simulate(SPINNING, steps=99, **arguments), tmp_path)
     assert text == "".join(whole.splitlines(keepends=True)[: 1 + 8 * block])
 
 

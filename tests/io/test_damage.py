@@ -72,9 +72,9 @@ def test_a_chunk_in_the_place_of_another_is_refused(one: str, other: str, tmp_pa
         return
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that it is damaged
-        found = nh.resume(unfinished, events=[NORTH])
-    assert found.to_dataset().identical(whole.to_dataset())
-    assert found.events["north"].step.tolist() == whole.events["north"].step.tolist()
+        result = nh.resume(unfinished, events=[NORTH])
+    assert result.to_dataset().identical(whole.to_dataset())
+    assert result.events["north"].step.tolist() == whole.events["north"].step.tolist()
 
 
 def test_attributes_of_another_store_are_refused(tmp_path: Path) -> None:
@@ -109,9 +109,11 @@ def test_a_run_that_failed_before_a_row_is_sealed_too(tmp_path: Path) -> None:
     """A block without rows, and one that an event ended, are as sound as the others."""
     store = tmp_path / "run.zarr"
     stop = nh.Event(lambda states: states.heading - 0.1, stop=1, name="stop")
-    found = _run(store, events=[stop])
-    assert found.events.stopped_by == "stop"
-    assert nh.resume(store, events=[stop]).time.tobytes() == nh.load_orbit(store).time.tobytes() == found.time.tobytes()
+    result = _run(store, events=[stop])
+    assert result.events.stopped_by == "stop"
+    assert (
+        nh.resume(store, events=[stop]).time.tobytes() == nh.load_orbit(store).time.tobytes() == result.time.tobytes()
+    )
 
 
 @pytest.mark.profile("faults", keep=["run"])
@@ -130,11 +132,11 @@ def test_what_is_written_has_a_checksum(tmp_path: Path) -> None:
     """Whoever changes an attribute by hand changes the checksum too, or is noticed: rows, end, steps, the body."""
     _run(tmp_path / "run.zarr")
     document = json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())
-    told = document["attributes"]
-    edits = {"run": told["run"].replace("60", "90"), "parameters": told["parameters"].replace("1.1", "7.0")}
+    report = document["attributes"]
+    edits = {"run": report["run"].replace("60", "90"), "parameters": report["parameters"].replace("1.1", "7.0")}
     for name, value in (edits | {"save_every": 2, "outcome": "not_converged"}).items():
-        assert value != told[name]
-        edited = document | {"attributes": told | {name: value}}
+        assert value != report[name]
+        edited = document | {"attributes": report | {name: value}}
         (tmp_path / "run.zarr" / "zarr.json").write_text(json.dumps(edited))
         assert_refused(tmp_path / "run.zarr", "checksum differs", nh.load_orbit, nh.resume)
 
@@ -185,12 +187,12 @@ def test_marked_blocks_are_listed_once(tmp_path: Path, monkeypatch: pytest.Monke
     folder = store / "run" / "blocks"
     for name in ("98.json", "77.txt", "-5.json", "2.json.partial"):
         shutil.copy(folder / "2.json", folder / name)
-    stream, seen = open_stream(store), []
+    stream, blocks = open_stream(store), []
     listed: Callable[..., list[str]] = os.listdir
-    monkeypatch.setattr(os, "listdir", lambda *folders: seen.append(folders) or listed(*folders))
+    monkeypatch.setattr(os, "listdir", lambda *folders: blocks.append(folders) or listed(*folders))
     assert stream.store.block_numbers() == {*range(4), 98}
     assert stream.finished_blocks() == 4
-    assert len(seen) == 2
+    assert len(blocks) == 2
 
 
 def test_a_path_that_exists_is_refused_in_the_words_of_who_asks(tmp_path: Path) -> None:
@@ -226,9 +228,9 @@ def _without_energy(*args: Any) -> Any:
     return {name: variable for name, variable in CHOSEN(*args).items() if name != "energy"}
 
 
-@pytest.mark.profile("faults", keep=["given"])
+@pytest.mark.profile("faults", keep=["values"])
 @pytest.mark.parametrize("given", [False, True], ids=["restored", "given"])
-def test_a_later_column_breaks_no_unfinished_run(given: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_later_column_breaks_no_unfinished_run(values: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Begun without a column that is written now, a run is resumed, repaired and extended to the bits of one run."""
     path = tmp_path / "run.zarr"
     monkeypatch.setattr(orbits, "stored_variables", _without_energy)
@@ -237,8 +239,8 @@ def test_a_later_column_breaks_no_unfinished_run(given: bool, tmp_path: Path, mo
     monkeypatch.undo()
     (path / "x" / "c" / "1").unlink()
     with pytest.warns(RuntimeWarning, match="chunk c/1 of the array x. Block 1 is computed again"):
-        found = nh.resume(path, discrete=SLEIGH if given else None)
-    assert found.to_dataset().identical(nh.simulate(SLEIGH, **RUN).to_dataset())
+        result = nh.resume(path, discrete=SLEIGH if values else None)
+    assert result.to_dataset().identical(nh.simulate(SLEIGH, **RUN).to_dataset())
     longer = nh.extend(path, 25)
     assert longer.to_dataset().identical(nh.simulate(SLEIGH, **RUN | {"steps": 85}).to_dataset())
     assert "energy" not in json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["arrays"])

@@ -45,12 +45,12 @@ MOTIONS: dict[str, Callable[[], Any]] = {  # systems, or discretizations that ar
 COLUMNS = ("time", "reduced_momentum", "cayley", "canonical_pose", "energy", "displacement")
 
 
-def _motion(made: Any) -> nh.Discretization:
-    return made if isinstance(made, nh.Discretization) else nh.discretize(made, 0.1)
+def _motion(things: Any) -> nh.Discretization:
+    return things if isinstance(things, nh.Discretization) else nh.discretize(things, 0.1)
 
 
-def _run(made: Any, **options: Any) -> nh.Orbit:
-    motion = _motion(made)
+def _run(things: Any, **options: Any) -> nh.Orbit:
+    motion = _motion(things)
     k = len(motion.system.constraint_subspace)
     return nh.simulate(motion, restricted_velocity=0.3 * np.cos(np.arange(k)), steps=6, **options)
 
@@ -114,15 +114,15 @@ def test_dimensions_of_tables_have_one_length(group: AbstractMatrixGroup, size: 
     body = nh.LLSystem(group, inertia_operator=np.eye(group.dim), constraint_subspace=np.eye(group.dim)[1:])
     orbit = _run(body)
     nh.save_orbit(orbit, tmp_path / "o.zarr")
-    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as found:
-        assert set(found.sizes.values()) <= {2, 3, 4, 7, group.dim - 1}
+    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as result:
+        assert set(result.sizes.values()) <= {2, 3, 4, 7, group.dim - 1}
     assert size in orbit.to_dataset(decoded=True).sizes.values()
     assert len(orbit.to_pandas().columns) == 1 + 3 * group.dim - 1 + (20 if group == nh.SE(4) else 5)
     free = GroupLagrangeDAlembert(group, lambda W, h: ((W - group.identity) ** 2).sum() / h, None)
-    told = nh.simulate(nh.discretize(free, 0.1), body_velocity=np.full(group.dim, 0.1), steps=2)
-    nh.save_orbit(told, tmp_path / "told.zarr")
-    again = nh.load_orbit(tmp_path / "told.zarr", discrete=told.motion)
-    assert list(again.to_pandas().columns) == list(told.to_pandas().columns)
+    report = nh.simulate(nh.discretize(free, 0.1), body_velocity=np.full(group.dim, 0.1), steps=2)
+    nh.save_orbit(report, tmp_path / "told.zarr")
+    again = nh.load_orbit(tmp_path / "told.zarr", discrete=report.motion)
+    assert list(again.to_pandas().columns) == list(report.to_pandas().columns)
 
 
 def test_right_invariant_labels(tmp_path: Path) -> None:
@@ -171,6 +171,6 @@ def test_large_rotations_are_kept_once(tmp_path: Path) -> None:
     orbit = nh.simulate(nh.discretize(nh.SuslovTop(np.diag(1 + np.arange(40.0))), 0.1), momentum=np.zeros(39), steps=2)
     assert set(orbit.to_dataset().data_vars) == {"energy", "restricted_momentum", "body_velocity", "momentum"}
     nh.save_orbit(orbit, tmp_path / "o.zarr")
-    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as found:
-        assert set(found.data_vars) == {"energy", "restricted_momentum"}
+    with xarray.open_zarr(tmp_path / "o.zarr", chunks=None) as result:
+        assert set(result.data_vars) == {"energy", "restricted_momentum"}
     assert nh.load_orbit(tmp_path / "o.zarr").configuration.tobytes() == orbit.configuration.tobytes()

@@ -101,8 +101,8 @@ def test_units_of_every_array() -> None:
         "energy unit": "energy",
         "1 / time unit": "body_velocity",
     }
-    told = {str(name): rows.attrs["units"] for found in variables for name, rows in found.items()}
-    assert told == {name: unit for unit, names in units.items() for name in names.split()}
+    report = {str(name): rows.attrs["units"] for result in variables for name, rows in result.items()}
+    assert report == {name: unit for unit, names in units.items() for name in names.split()}
 
 
 def test_provenance(tmp_path: Path) -> None:
@@ -267,7 +267,7 @@ def test_foreign_stores_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("name", "value", "message"),
     [
         ("save_every", 0, "save_every: Input should be greater than 0"),
         ("save_every", "1", "save_every: Input should be a valid integer"),
@@ -289,14 +289,14 @@ def test_foreign_stores_are_refused(tmp_path: Path) -> None:
         ("parameters", {"color": 1.0}, "hold parameters of nonholo.ChaplyginSleigh. Got "),
     ],
 )
-def test_edited_attributes_are_refused(name: str, value: Any, told: str, tmp_path: Path) -> None:
+def test_edited_attributes_are_refused(name: str, value: Any, message: str, tmp_path: Path) -> None:
     """What a store says of itself, or another version would say, is checked as data, and each problem is named."""
     store = tmp_path / "run.zarr"
     _orbit(store=store)
     if isinstance(value, dict):
         value = json.dumps(json.loads(read_attributes(store)[name]) | value)
     edit_attributes(store, {name: value})
-    assert_refused(store, re.escape(told), nh.load_orbit, nh.resume)
+    assert_refused(store, re.escape(message), nh.load_orbit, nh.resume)
 
 
 def test_only_what_is_ours_is_replaced(store: Path) -> None:

@@ -75,11 +75,11 @@ def test_what_is_left_does_not_lock(left: str, store: Path) -> None:
     assert list((store / "run").iterdir()) == []
 
 
-@pytest.mark.parametrize("told", [b"", b"{", b"[]", b"\xff\xfe", b"[" * 100_000, b'{"host": {}}'])
-def test_held_lock_needs_no_name(told: bytes, store: Path) -> None:
+@pytest.mark.parametrize("message", [b"", b"{", b"[]", b"\xff\xfe", b"[" * 100_000, b'{"host": {}}'])
+def test_held_lock_needs_no_name(message: bytes, store: Path) -> None:
     """A lock is held also if what tells its owner cannot be read, and a terminal is not controlled by it."""
     with places.write_lock(store):
-        (store / "run" / "lock.json").write_bytes(told)
+        (store / "run" / "lock.json").write_bytes(message)
         with pytest.raises(BlockingIOError, match="an unknown process"), places.write_lock(store):
             pass
         (store / "run" / "lock.json").write_text(json.dumps({"pid": "\x1b]0;x\x07", "host": "h", "since": 1}))
@@ -270,8 +270,8 @@ def test_python_without_assertions(tmp_path: Path) -> None:
     """Under `python -O`, where zarr does not work, every door of stores says so before any work."""
     nh.save_orbit(_orbit(), tmp_path / "run.zarr")
     command = [sys.executable, "-O", "-c", OPTIMIZED, str(tmp_path / "run.zarr")]
-    told = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)  # noqa: S603
-    assert told.stdout.count(WORDS) == 4
+    report = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)  # noqa: S603
+    assert report.stdout.count(WORDS) == 4
     assert [path.name for path in tmp_path.iterdir()] == ["run.zarr"]
 
 

@@ -45,28 +45,28 @@ def members(system: Any, varied: tuple[str, ...] = ()) -> Arrays:
 
 def orbits(system: Any, order: int = 2, rank: int | None = None, size: float = SIZE) -> Arrays:
     """Run single orbits from starts of several sizes, the first ones to the end, and step each state back."""
-    rng, found = np.random.default_rng(2), []
+    rng, result = np.random.default_rng(2), []
     discrete = nh.discretize(system, STEP, order=order)
     for share in SHARES:
         velocity = rng.normal(size=rank or system.rank)
         velocity *= share * size / np.linalg.norm(velocity)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
-        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+        result += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
         defect = nh.invariants(orbit).reversal_defect if len(orbit) > 1 else None
-        found += [np.array(np.nan if defect is None else defect)]
-    return found
+        result += [np.array(np.nan if defect is None else defect)]
+    return result
 
 
 def forced(system: Any) -> Arrays:
     """Run single orbits under a weight with friction, and with a force for each step."""
-    rng, found = np.random.default_rng(3), []
+    rng, result = np.random.default_rng(3), []
     n, velocity = system.group.size - system.has_blade, rng.normal(size=system.rank)
     heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
     for force in (rub, rng.normal(size=(STEPS, system.group.dim))):
         discrete = nh.discretize(nh.Forced(system, heavy, force), STEP / 10)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
-        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
-    return found
+        result += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return result
 
 
 def balanced(system: Any) -> Arrays:
@@ -106,24 +106,24 @@ def _well(g: np.ndarray) -> float:
 
 def driven(system: Any) -> Arrays:
     """Run single orbits under functions that are compiled, where compilation is not turned off."""
-    found = []
+    result = []
     forces = _pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag, _thrust
     for force, scheme in itertools.product(forces, (None, "variational")):
         discrete = nh.discretize(nh.Forced(system, _well, force, scheme), STEP / 10)
         velocity = np.linspace(0.5, -0.3, system.rank)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
-        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
-    return found
+        result += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return result
 
 
 def nearest(system: Any) -> Arrays:
     """Follow every real value over a momentum, some to the end."""
-    discrete, found = nh.discretize(system, STEP), []
+    discrete, result = nh.discretize(system, STEP), []
     values = nh.displacements_over(discrete, SIZE * np.ones(len(system.constraint_subspace)))
     for W in values.displacement[values.is_real].real:
         orbit = nh.simulate(discrete, displacement=W, steps=STEPS, branch="nearest", throw=False)
-        found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
-    return found
+        result += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
+    return result
 
 
 def read(system: Any) -> Arrays:
@@ -159,12 +159,12 @@ def members_of_flows(system: Any) -> Arrays:
 
 def in_coordinates() -> Arrays:
     """Run a snakeboard to the end of its motion, and a driven sleigh."""
-    found = []
+    result = []
     for ready in (nh.examples.snakeboard(), nh.examples.driven_sleigh()):
         how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
         orbit = nh.simulate(nh.discretize(ready.system, 0.1), **how, steps=MEMBERS, throw=False)
-        found += [orbit.configuration, orbit.momentum, orbit.multipliers, orbit.energy]
-    return found
+        result += [orbit.configuration, orbit.momentum, orbit.multipliers, orbit.energy]
+    return result
 
 
 def body(group: Any, k: int, seed: int) -> nh.LLSystem:

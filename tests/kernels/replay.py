@@ -101,11 +101,13 @@ def _at(address: Callable[[Any], int], kernel: Any, arguments: tuple[Any, ...]) 
 def recorded(bodies: int) -> list[bytes]:
     """Run bodies of all kinds in turn, and return the calls that the library answers."""
     calls: list[bytes] = []
-    known = compiled.library_of_kernels()
+    reference = compiled.library_of_kernels()
 
     def call(kernel: Any, *arguments: Any) -> Any:
         key = compiled.key_of(arguments)
-        if "f" not in compiled.tokens(key) and known and known.entry(kernel, key):  # addresses are of this process
+        if (
+            "f" not in compiled.tokens(key) and reference and reference.entry(kernel, key)
+        ):  # addresses are of this process
             calls.append(pickle.dumps((kernel.__module__, kernel.__qualname__, _at(lambda _: 0, kernel, arguments))))
         return _run(kernel, *arguments)
 

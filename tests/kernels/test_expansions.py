@@ -118,9 +118,9 @@ def test_emitted_code_of_random_structures(seed: int) -> None:
     counts = rng.integers(0, 6, size)
     terms, before, products = int(counts.sum()), k + size, rng.integers(1, 30)
     rows = np.stack([rng.integers(0, k, products), rng.integers(0, -(-before // 8), products)])
-    found = rng.integers(0, 8 * products + k, terms)
+    result = rng.integers(0, 8 * products + k, terms)
     f = _series.quadratic(USUAL["top"].canonical)._replace(
-        velocities=rng.normal(size=(k, k)), rows=rows, first=np.append(0, np.cumsum(counts)), sources=found,
+        velocities=rng.normal(size=(k, k)), rows=rows, first=np.append(0, np.cumsum(counts)), sources=result,
         factors=rng.normal(size=(1, terms)), blocks=np.zeros(size, dtype=np.int64),
     )  # fmt: skip
     assert_same_bits(f, ONE, rng.normal(size=(2, size + 1)), 20)

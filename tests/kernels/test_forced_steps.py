@@ -43,9 +43,9 @@ def test_the_second_correction_leaves_an_error_of_third_order(name: str) -> None
     root, left = kernels.runs_of(route.body).chart_of(route.body, state), []
     for off in (1e-2, 1e-3):
         guess = root + off * np.array([0.6, -0.8])
-        found = np.reshape(corrections(route.body, *m, *guess), (2, 2))
-        assert np.array_equal(found[0], kernels.correction(route.body, *m, *guess))
-        left.append([np.abs(residual(route.body, *m, *y)).max() for y in guess + np.cumsum(found, axis=0)])
+        result = np.reshape(corrections(route.body, *m, *guess), (2, 2))
+        assert np.array_equal(result[0], kernels.correction(route.body, *m, *guess))
+        left.append([np.abs(residual(route.body, *m, *y)).max() for y in guess + np.cumsum(result, axis=0)])
     assert np.log10(left[0][0] / left[1][0]) == pytest.approx(2, abs=0.1)
     assert np.log10(left[0][1] / left[1][1]) == pytest.approx(3, abs=0.1)
 

@@ -41,9 +41,9 @@ def known() -> compiled.Library:
     """Return the library of this text."""
     if first_way() != "library":
         pytest.skip("kernels run by another way")
-    found = library_of_kernels()
-    assert found is not None, "Compile it: python -m nonholo.base.compiled.build nonholo/kernels"
-    return found
+    result = library_of_kernels()
+    assert result is not None, "Compile it: python -m nonholo.base.compiled.build nonholo/kernels"
+    return result
 
 
 def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
@@ -104,9 +104,9 @@ def test_the_log_names_the_way(way: str, said: str, known: compiled.Library, cap
     with pytest.MonkeyPatch.context() as patch, caplog.at_level("INFO", "nonholo"):
         patch.setattr(compiled._kernel, "first_way", lambda: way)
         patch.setattr(compiled._kernel, "_by_numba", compiled._kernel._by_numba.__wrapped__)
-        found = library_of_kernels.__wrapped__()
+        result = library_of_kernels.__wrapped__()
     assert caplog.messages == [f"Kernels run {said}{known.path if way == 'library' else ''}."]
-    assert (found is not None) == (way == "library")
+    assert (result is not None) == (way == "library")
 
 
 @pytest.mark.parametrize("size", [2**21, 2**40], ids=["no memory", "no number of bytes"])

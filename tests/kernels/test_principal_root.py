@@ -103,8 +103,8 @@ def test_runs_have_the_values_of_the_definition(name: str) -> None:
     discrete, rng, rule = nh.discretize(system, step), np.random.default_rng(5), branch_rule("test", "nearest")
     frame = frame_of("test", discrete)
     for size in (0.3, 1.0, 3.0):
-        found = nh.displacements_over(discrete, size * rng.normal(size=len(system.constraint_subspace)))
-        for W in found.displacement[found.is_real].real:
+        result = nh.displacements_over(discrete, size * rng.normal(size=len(system.constraint_subspace)))
+        for W in result.displacement[result.is_real].real:
             orbit = nh.simulate(discrete, displacement=W, steps=30, branch="nearest", throw=False)
             code, place = first_place("test", discrete, frame, rule, np.empty(0), W)
             for present in orbit.displacement:
@@ -118,8 +118,8 @@ def test_an_unclear_step_is_left_to_the_definition() -> None:
     """A sleigh that meets a fold on its way: the kernel stops before it, the definition says why the run ends."""
     discrete, outcomes = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0), set()
     for r in 3 * np.random.default_rng(5).normal(size=(8, 2)):
-        found = nh.displacements_over(discrete, r)
-        for W in found.displacement[found.is_real].real:
+        result = nh.displacements_over(discrete, r)
+        for W in result.displacement[result.is_real].real:
             outcomes.add(nh.simulate(discrete, displacement=W, steps=40, branch="nearest", throw=False).outcome)
     assert outcomes == {nh.Outcome.successful, nh.Outcome.no_real_branch}
 

@@ -65,15 +65,15 @@ def _compiles(mark: ast.expr) -> bool:
 
 def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
     """Return the functions that numba compiles in some rooms, by their places."""
-    found = {}
+    result = {}
     for room in rooms:
         files = list((Path(nonholo.__file__).parent / room).rglob("*.py"))
         assert files, room
         for file in files:
             for node in ast.walk(ast.parse(file.read_text())):
                 if isinstance(node, ast.FunctionDef) and any(map(_compiles, node.decorator_list)):
-                    found[f"{file}:{node.name}"] = node
-    return found
+                    result[f"{file}:{node.name}"] = node
+    return result
 
 
 @pytest.mark.profile("routes", instead="test_three_ways_have_the_same_bits")
@@ -115,14 +115,14 @@ def test_a_family_is_added_by_its_kernel_and_one_entry(disabled: str, tmp_path: 
     A kernel of its own is run by all of them. Each of its numbers is that of the library to rounding.
     """
     both = printed(FREE_TOP, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_DISABLE_JIT=disabled)
-    given, added = both["given"], both["added"]
-    assert (given["body"], added["body"]) == ("SuslovBody", "FreeTopBody")
+    arguments, added = both["given"], both["added"]
+    assert (arguments["body"], added["body"]) == ("SuslovBody", "FreeTopBody")
     assert added["is_scalar"]
-    assert added["outcomes"] == given["outcomes"] == [0, 0, 1]
+    assert added["outcomes"] == arguments["outcomes"] == [0, 0, 1]
     assert added["reversal_defect"] < 1e-14
     for name in ("pose", "composed", "stored", "own"):
-        assert np.allclose(added[name], given[name], rtol=0, atol=1e-14), name
-    assert np.allclose(added["members"], given["members"], rtol=0, atol=1e-14, equal_nan=True)
+        assert np.allclose(added[name], arguments[name], rtol=0, atol=1e-14), name
+    assert np.allclose(added["members"], arguments["members"], rtol=0, atol=1e-14, equal_nan=True)
     assert added["pose"] == added["stored"]
     assert added["own"][0] == added["members"][0] == added["pose"][-1]
 

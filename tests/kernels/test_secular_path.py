@@ -79,10 +79,10 @@ def test_a_half_turn(beyond: bool) -> None:
     system = nh.SuslovTop(PAST_PI)
     discrete, along = nh.discretize(system, 1.0), MOMENTUM / np.linalg.norm(MOMENTUM)
     r = MOMENTUM if beyond else 2 * (along @ system.coupling) * along
-    code, found = by_path(discrete.route, r)
+    code, result = by_path(discrete.route, r)
     assert code == 0
-    assert beyond or abs(found[0]) < 1e-12
-    values, q = nh.displacements_over(discrete, r), np.append(found[1:], found[0])
+    assert beyond or abs(result[0]) < 1e-12
+    values, q = nh.displacements_over(discrete, r), np.append(result[1:], result[0])
     assert values.principal is not None
     W = values.displacement[values.principal].real
     assert np.abs(W - (np.eye(4) - 2 * np.outer(q, q)) * [1, 1, 1, -1]).max() < 1e-12
@@ -155,8 +155,8 @@ def test_linear_equations(kind: str, equal: bool) -> None:
         det = solve_linear(body, x, right, move)
         J = dense(body.b, -body.c, body.slides, np.concatenate([x[:1], x[2:], x[1:2]]))[1]
         exact = np.linalg.solve(J, np.concatenate([right[2:], [2 * right[0]], [right[1]]]))
-        found = np.concatenate([move[1::-1], move[2:]])
-        assert np.abs(found - np.roll(exact, 1)).max() < 1e-9 * np.abs(exact).max()
+        result = np.concatenate([move[1::-1], move[2:]])
+        assert np.abs(result - np.roll(exact, 1)).max() < 1e-9 * np.abs(exact).max()
         signs.add(np.sign(det * np.linalg.det(J)))
     assert len(signs) == 1
 

@@ -96,16 +96,16 @@ def test_no_other_root_is_certain(make) -> None:  # noqa: ANN001
             if radius > 0:
                 break
         assert radius > 0
-        found = nh.displacements_over(discrete, share * r)
-        for index in np.flatnonzero(found.is_real):
-            W = found.displacement[index].real
+        result = nh.displacements_over(discrete, share * r)
+        for index in np.flatnonzero(result.is_real):
+            W = result.displacement[index].real
             K = system.group.vee((W - system.group.inverse(W)) / 2) @ system.constraint_subspace.T
             x = step.to_kernel(K)[:k]
             lever = step.body.mass * step.body.arm**2
             below_right_angle = np.trace(W[: system.group.n, : system.group.n]) > system.group.n - 2
             certain = (step.body.b + lever) @ x**2 <= radius and below_right_angle
-            assert certain == (index == found.principal)
-            others += index != found.principal
+            assert certain == (index == result.principal)
+            others += index != result.principal
     assert others >= 6
 
 
@@ -183,14 +183,14 @@ def test_jacobian_is_the_derivative_of_the_residual(group: nh.SO) -> None:
         _step.displace(body, w, y)
         _step.residual(body, w, 0.7, m)
         _step.jacobian(body, w)
-        found, at = w.slope.copy(), []
+        result, at = w.slope.copy(), []
         for a in range(len(y)):
             for sign in (1, -1):
                 _step.displace(body, w, y + sign * 1e-5 * np.eye(len(y))[a])
                 _step.residual(body, w, 0.7, m)
                 at.append(w.sums[0].copy())
         quotients = (np.array(at[::2]) - np.array(at[1::2])) / 2e-5
-        np.testing.assert_allclose(found, quotients, rtol=0, atol=1e-8 * np.abs(found).max())
+        np.testing.assert_allclose(result, quotients, rtol=0, atol=1e-8 * np.abs(result).max())
 
 
 @pytest.mark.parametrize("size", [1, 3, 8, 11])

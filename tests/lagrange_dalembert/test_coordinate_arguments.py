@@ -90,9 +90,9 @@ test_arguments_of_other_systems_are_refused = refusals(
 )
 
 
-def system_of(**given: Any) -> nh.LagrangeDAlembert:
+def system_of(**arguments: Any) -> nh.LagrangeDAlembert:
     """Return a particle in which something is another one."""
-    return nh.LagrangeDAlembert(**{"lagrangian": lagrangian, "constraint_forms": forms, "dimension": 3} | given)
+    return nh.LagrangeDAlembert(**{"lagrangian": lagrangian, "constraint_forms": forms, "dimension": 3} | arguments)
 
 
 def started(system: nh.LagrangeDAlembert, v: Any = V, **how: Any) -> Any:

@@ -151,13 +151,13 @@ def test_functions_of_two_configurations_are_taken_too() -> None:
         return SYSTEM.constraint_forms((q + r) / 2) @ (r - q) / h
 
     options = {"dimension": 3, "discrete_lagrangian": action, "discrete_constraints": constraint}
-    found = nh.discretize(LagrangeDAlembert(SYSTEM.lagrangian, SYSTEM.constraint_forms, **options), h)
+    result = nh.discretize(LagrangeDAlembert(SYSTEM.lagrangian, SYSTEM.constraint_forms, **options), h)
     expected = nh.simulate(nh.discretize(SYSTEM, h), **START, steps=20)
-    orbit = nh.simulate(found, **START, steps=20)
+    orbit = nh.simulate(result, **START, steps=20)
     assert_near(orbit, expected, 1e-12, "configuration", "multipliers")
     assert np.abs(orbit.energy - expected.energy).max() <= 0.01 * np.abs(expected.energy).max()
     q, r = expected.configuration[:2]
-    assert abs(found.regularity(q, r) - SYSTEM.regularity(q, r, time_step=h)) <= 1e-12
+    assert abs(result.regularity(q, r) - SYSTEM.regularity(q, r, time_step=h)) <= 1e-12
 
 
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")

@@ -141,13 +141,13 @@ def test_rows_of_tables_are_looked_up(search: int) -> None:
     table = pickle.loads(pickle.dumps(ForceTable.of(1.0 + np.arange(6.0).reshape(3, 2))))  # noqa: S301
     f, inputs, steps = Formulas(), [Scalar("input"), Scalar("input")], np.array([0.0, 1 - 1e-9, 2.0, 3.0, -1.0, 1e9])
     results = [f("look", *inputs, f.constant(float(column)), f.constant(2.0)) for column in range(2)]
-    look, found = function_of(inputs, results, search), np.empty((len(steps) + 1, 2))
-    for step, row in zip([*steps, np.nan], found, strict=True):
+    look, result = function_of(inputs, results, search), np.empty((len(steps) + 1, 2))
+    for step, row in zip([*steps, np.nan], result, strict=True):
         look(np.array([table.address[0, 0], step]).ctypes, row.ctypes)
-    np.testing.assert_array_equal(found, [[1, 2], [3, 4], [5, 6], *np.zeros((4, 2))])
-    np.testing.assert_array_equal(table.acting(np.rint(steps).astype(int)), found[:-1])
+    np.testing.assert_array_equal(result, [[1, 2], [3, 4], [5, 6], *np.zeros((4, 2))])
+    np.testing.assert_array_equal(table.acting(np.rint(steps).astype(int)), result[:-1])
     with jax.enable_x64(True):
-        np.testing.assert_array_equal([table.row(jnp.asarray(step)) for step in steps], found[:-1])
+        np.testing.assert_array_equal([table.row(jnp.asarray(step)) for step in steps], result[:-1])
 
 
 def test_pickles_of_tables_hold_their_rows_once() -> None:

@@ -71,8 +71,8 @@ def test_a_system_keeps_the_numbers_of_its_making(kind: str) -> None:
 
 
 def _system(name: str, function: Any) -> nh.LagrangeDAlembert:
-    given = {"lagrangian": _Body().lagrangian, "constraint_forms": None, "dimension": 2, name: function}
-    return nh.LagrangeDAlembert(**given)
+    arguments = {"lagrangian": _Body().lagrangian, "constraint_forms": None, "dimension": 2, name: function}
+    return nh.LagrangeDAlembert(**arguments)
 
 
 _pull = lambda q: mass * q @ q  # noqa: E731

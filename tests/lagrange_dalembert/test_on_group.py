@@ -52,9 +52,9 @@ def test_invariant_constraints_give_the_known_maps(name: str) -> None:
     if name == "veselova":
         velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
     start = {"configuration": g, "body_velocity": velocity, "steps": 50}
-    ours, known = (nh.simulate(nh.discretize(each, 0.15), **start) for each in (rewritten(system), system))
-    assert np.abs(known.multipliers).max() > 0.01
-    assert_near(ours, known, 1e-12, "momentum", "displacement", "configuration", "multipliers")
+    ours, reference = (nh.simulate(nh.discretize(each, 0.15), **start) for each in (rewritten(system), system))
+    assert np.abs(reference.multipliers).max() > 0.01
+    assert_near(ours, reference, 1e-12, "momentum", "displacement", "configuration", "multipliers")
 
 
 def blade(g):  # noqa: ANN001, ANN201
@@ -178,8 +178,8 @@ def test_a_free_body_in_a_potential_is_that_of_the_forced_map(step: float) -> No
     kicked = nh.discretize(nh.Forced(body, lambda g: float(height(g)), scheme="variational"), step)
     ours = nh.discretize(nh.Forced(GroupLagrangeDAlembert(PLANE, ACTION, None), height), step)
     start = {**START, "body_velocity": (0.3, 0.5, -0.2), "steps": 30}
-    orbit, known = nh.simulate(ours, **start), nh.simulate(kicked, **start)
-    assert np.abs(orbit.configuration - known.configuration).max() <= 1e-10
+    orbit, reference = nh.simulate(ours, **start), nh.simulate(kicked, **start)
+    assert np.abs(orbit.configuration - reference.configuration).max() <= 1e-10
     assert _run.programs(ours.system, (3, 3), 3) is not None  # compiled
 
 
@@ -229,9 +229,9 @@ def test_forces_are_those_of_the_body_with_the_same_constraint() -> None:
     sleigh = CASES["sleigh"][0]
     terms = nh.Gravity([0.0, -0.5], [0.2, 0.1]), nh.Spring([0.1, 0.2], [1.0, 1.0], 0.7, 0.3), height
     ours = nh.Forced(rewritten(sleigh), terms, (RUB, motor))
-    known = nh.Forced(sleigh, terms, (RUB, functools.partial(motor, xp=np)))
+    reference = nh.Forced(sleigh, terms, (RUB, functools.partial(motor, xp=np)))
     start = {**START, "body_velocity": (0.5, 1.0, 0.0)}
-    flow, other = (nh.flow(each, **start, times=np.linspace(0.0, 1.0, 51)) for each in (ours, known))
+    flow, other = (nh.flow(each, **start, times=np.linspace(0.0, 1.0, 51)) for each in (ours, reference))
     assert_near(flow, other, 1e-9, "configuration", "momentum")
     assert np.abs(flow.energy - flow.energy[0] - flow.work).max() <= 1e-3 * np.abs(flow.work).max()  # trapezoidal
     gaps = [
@@ -297,8 +297,8 @@ def test_derivatives_of_rollouts_are_those_of_the_ll_map(derive) -> None:  # noq
     pose = START["configuration"]
     with jax.enable_x64(True):
         ours = derive(lambda a, *rest: end_of(OF_NUMBERS.with_parameters(a=a), pose, *rest), (0, 1, 2))(*start)
-        known = jax.jacfwd(lambda a, *rest: end_of(sleigh(a), pose, *rest), (0, 1, 2))(*start)
-    for one, other in zip(ours, known, strict=True):
+        reference = jax.jacfwd(lambda a, *rest: end_of(sleigh(a), pose, *rest), (0, 1, 2))(*start)
+    for one, other in zip(ours, reference, strict=True):
         np.testing.assert_allclose(one, other, 0, 1e-11 * np.abs(other).max())
 
 
@@ -316,10 +316,10 @@ def test_motions_with_parameters_are_those_with_numbers_within() -> None:
     """Maps, and flows under a potential, whose inertia is derived from the discrete Lagrangian."""
     system, own = OF_NUMBERS.with_parameters(a=0.1), rewritten(sleigh(0.1))
     start = {**START, "body_velocity": (1.0, -1.0, 0.0)}
-    ours, known = (nh.simulate(nh.discretize(each, 0.2), **start, steps=10) for each in (system, own))
-    assert_near(ours, known, 1e-13, "momentum", "configuration", "energy", "multipliers")
-    ours, known = (nh.flow(nh.Forced(each, height), **start, times=[0.0, 1.0]) for each in (system, own))
-    assert_near(ours, known, 1e-12, "momentum", "configuration", "energy")
+    ours, reference = (nh.simulate(nh.discretize(each, 0.2), **start, steps=10) for each in (system, own))
+    assert_near(ours, reference, 1e-13, "momentum", "configuration", "energy", "multipliers")
+    ours, reference = (nh.flow(nh.Forced(each, height), **start, times=[0.0, 1.0]) for each in (system, own))
+    assert_near(ours, reference, 1e-12, "momentum", "configuration", "energy")
 
 
 def rotation_only(W, h):  # noqa: ANN001, ANN201

@@ -116,8 +116,8 @@ def test_elimination_solves_bordered_equations(n: int, s: int) -> None:
     b, values = [Scalar("input") for _ in K], rng.normal(size=n + s)
     inputs = [(numbers[i][j], K[i, j]) for i in range(n + s) for j in range(i + 1) if numbers[i][j].value is None]
     code = function_of([*(each for each, _ in inputs), *b], Elimination(f, numbers).solution(b))
-    given, x = np.array([*(value for _, value in inputs), *values]), np.empty(n + s)
-    code(given.ctypes.data, x.ctypes.data)
+    arguments, x = np.array([*(value for _, value in inputs), *values]), np.empty(n + s)
+    code(arguments.ctypes.data, x.ctypes.data)
     assert np.abs(x - np.linalg.solve(K, values)).max() < 1e-12
 
 

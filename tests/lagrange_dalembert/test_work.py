@@ -68,9 +68,9 @@ def test_the_balance_closes_at_order_two(name: str) -> None:
     left = [np.abs(orbit.energy - orbit.energy[0] - orbit.work).max() for orbit in orbits]
     assert abs(np.log2(left[0] / left[1]) - 2.0) <= 0.1
     assert left[1] < 0.02 * np.ptp(orbits[1].energy)
-    found = nh.invariants(orbits[1])
-    assert found.work == orbits[1].work[-1]
-    assert found.energy_drift == left[1] / np.abs(orbits[1].energy).max()
+    result = nh.invariants(orbits[1])
+    assert result.work == orbits[1].work[-1]
+    assert result.energy_drift == left[1] / np.abs(orbits[1].energy).max()
     if name not in ("table", "all three"):
         exact = nh.flow(CASES[name](0.02), **_start(name), times=(0.0, SPAN), rtol=1e-13, atol=1e-14)
         errors = [np.abs(orbit.configuration[-1] - exact.configuration[-1]).max() for orbit in orbits]
@@ -118,9 +118,9 @@ def test_moving_constraints_and_a_lagrangian_of_time() -> None:
         constraint_velocities=lambda q, _: 0.5 * (q @ q)[None],
     )
     time, q, v = 0.3, np.array([2.0, 0.0]), np.array([0.7, 1.0])  # v_y = 0.5 r
-    found = nh.vector_field(system)(time, np.concatenate([q, v]))
+    result = nh.vector_field(system)(time, np.concatenate([q, v]))
     # x'' = -(1 + t) x, and the derivative of x y' - y x' = (x^2 + y^2) / 2 is x y'' = x x'
-    np.testing.assert_allclose(found, [0.7, 1.0, -(1 + time) * q[0], 0.7], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(result, [0.7, 1.0, -(1 + time) * q[0], 0.7], rtol=0, atol=1e-14)
 
 
 def test_traced_and_stacked_states_are_those_of_numpy() -> None:

@@ -187,9 +187,9 @@ def save_and_load(c: Case, folder: Path) -> None:
     np.testing.assert_array_equal(loaded.body_velocity, c.orbit.body_velocity)
 
 
-def _saved_and_loaded(orbit: Any, store: Path, **known: Any) -> Any:
+def _saved_and_loaded(orbit: Any, store: Path, **reference: Any) -> Any:
     nh.save_orbit(orbit, store)
-    loaded = nh.load_orbit(store, **known)
+    loaded = nh.load_orbit(store, **reference)
     assert_same(loaded, orbit)
     np.testing.assert_array_equal(loaded.energy, orbit.energy)
     return loaded
@@ -290,28 +290,28 @@ def ensemble_of_parameters(c: Case, _: Path) -> None:
 def ensemble_with_events(c: Case, _: Path) -> None:
     """Members have the crossings of their runs alone."""
     event, _ = c.event()
-    found = nh.ensemble(c.discrete, steps=STEPS, events=[event], **c.rows, **c.run).events["middle"]
-    assert found.count[1] > 0
+    result = nh.ensemble(c.discrete, steps=STEPS, events=[event], **c.rows, **c.run).events["middle"]
+    assert result.count[1] > 0
     for member in range(len(_MEMBERS)):
         alone = c.simulated(events=[event], **c.alone(member)).events["middle"]
-        assert found.count[member] == len(alone)
+        assert result.count[member] == len(alone)
         if len(alone):
-            np.testing.assert_allclose(found.first.time[member], alone.time[:1], 0, 1e-12)
+            np.testing.assert_allclose(result.first.time[member], alone.time[:1], 0, 1e-12)
 
 
 @ability
 def sweep(c: Case, folder: Path) -> None:
     """The members of a sweep end where runs alone do; its store, resumed, is the sweep."""
     design, task = nh.Grid({"time_step": [c.h, c.h / 2]}), _task(c)
-    found = nh.sweep(task, design, folder / "a.zarr")
+    result = nh.sweep(task, design, folder / "a.zarr")
     for member, alone in enumerate((c.orbit, c.halves.chosen(slice(0, 1 + STEPS)))):
-        np.testing.assert_allclose(found.final_energy[member], alone.energy[-1], 0, 1e-13)
-        end = "restricted_momentum" if "final_momentum" in found else "configuration"
-        stored = found.get("final_momentum", found.get("final_configuration"))
+        np.testing.assert_allclose(result.final_energy[member], alone.energy[-1], 0, 1e-13)
+        end = "restricted_momentum" if "final_momentum" in result else "configuration"
+        stored = result.get("final_momentum", result.get("final_configuration"))
         np.testing.assert_allclose(stored[member], getattr(alone, end)[-1], 0, 1e-13)
-        np.testing.assert_allclose(found.final_time[member], alone.time[-1], 0, 1e-13)
+        np.testing.assert_allclose(result.final_time[member], alone.time[-1], 0, 1e-13)
     own = {} if not c.known else {"task": task}
-    assert nh.resume(folder / "a.zarr", **own).equals(found)
+    assert nh.resume(folder / "a.zarr", **own).equals(result)
 
 
 def _task(c: Case) -> Any:
@@ -335,9 +335,9 @@ def flow(c: Case, _: Path) -> None:
 def flow_with_events(c: Case, _: Path) -> None:
     """A flow that ends at the time of a crossing is there."""
     event, count = c.event(c.flow)
-    found = c.flown(c.flow.time, events=[event]).events["middle"]
-    assert len(found) == count > 0
-    there = c.flown([0.0, found.time[0]])
+    result = c.flown(c.flow.time, events=[event]).events["middle"]
+    assert len(result) == count > 0
+    there = c.flown([0.0, result.time[0]])
     np.testing.assert_allclose(event.function(there)[-1], 0, atol=1e-9)
 
 
@@ -345,8 +345,8 @@ def flow_with_events(c: Case, _: Path) -> None:
 def flow_at_other_times(c: Case, _: Path) -> None:
     """States between are those of a flow that is asked for them."""
     times = c.h * np.array([0.3, 4.5])
-    asked = c.flown([0.0, *times]).chosen(slice(1, None))
-    assert_close(c.flow.at(times), asked, 1e-11)
+    states = c.flown([0.0, *times]).chosen(slice(1, None))
+    assert_close(c.flow.at(times), states, 1e-11)
 
 
 @ability
@@ -360,8 +360,8 @@ def flow_ensemble(c: Case, _: Path) -> None:
 @ability
 def flow_store(c: Case, folder: Path) -> None:
     """A saved flow comes back with its bits."""
-    known = {"discrete": c.flow.motion} if c.known and getattr(c.system, "forces", c.system) else {}
-    _saved_and_loaded(c.flow, folder / "a.zarr", **known)
+    reference = {"discrete": c.flow.motion} if c.known and getattr(c.system, "forces", c.system) else {}
+    _saved_and_loaded(c.flow, folder / "a.zarr", **reference)
 
 
 @ability
@@ -372,9 +372,9 @@ def multipliers(c: Case, _: Path) -> None:
     elif c.discrete.forces is not None or c.system.is_spatial:
         law = "multipliers"
     else:
-        found, pairs = c.orbit.multipliers, zip(c.orbit.displacement, c.orbit.momentum, strict=True)
+        result, pairs = c.orbit.multipliers, zip(c.orbit.displacement, c.orbit.momentum, strict=True)
         left = c.orbit.momentum[1:] - np.stack([c.system.group.coadjoint(W, p) for W, p in pairs])[:-1]
-        np.testing.assert_allclose(left @ np.linalg.pinv(c.system.annihilator), found, 0, 1e-12)
+        np.testing.assert_allclose(left @ np.linalg.pinv(c.system.annihilator), result, 0, 1e-12)
         return
     assert nh.testing.check_discretization(c.discrete, definition=False, **_place(c))[law].status == "ok"
 
@@ -386,10 +386,10 @@ def _place(c: Case) -> dict[str, Any]:
 @ability
 def dataset(c: Case, _: Path) -> None:
     """The dataset has the arrays of the orbit, and its names."""
-    told = c.orbit.to_dataset()
-    np.testing.assert_array_equal(told["time"], c.orbit.time)
-    np.testing.assert_array_equal(told["energy"], c.orbit.energy)
-    np.testing.assert_array_equal(told[c.kept], getattr(c.orbit, c.kept))
+    report = c.orbit.to_dataset()
+    np.testing.assert_array_equal(report["time"], c.orbit.time)
+    np.testing.assert_array_equal(report["energy"], c.orbit.energy)
+    np.testing.assert_array_equal(report[c.kept], getattr(c.orbit, c.kept))
 
 
 @ability
@@ -408,10 +408,10 @@ def csv(c: Case, folder: Path) -> None:
     c.orbit.to_csv(folder / "a.csv")
     written, table = np.genfromtxt(folder / "a.csv", delimiter=",", names=True), c.orbit.to_pandas()
     np.testing.assert_array_equal(written["t"], c.orbit.time)
-    told = {table[name].to_numpy().tobytes() for name in table} | {row.tobytes() for row in c.seen(c.orbit).T}
-    told |= {row.tobytes() for row in c.orbit.configuration.reshape(len(table), -1).T}
+    report = {table[name].to_numpy().tobytes() for name in table} | {row.tobytes() for row in c.seen(c.orbit).T}
+    report |= {row.tobytes() for row in c.orbit.configuration.reshape(len(table), -1).T}
     for name in written.dtype.names[1:]:
-        assert np.ascontiguousarray(written[name]).tobytes() in told, name
+        assert np.ascontiguousarray(written[name]).tobytes() in report, name
 
 
 @ability
@@ -435,9 +435,9 @@ def film(c: Case, folder: Path) -> None:
 def page(c: Case, folder: Path) -> None:
     """A page holds the first state of the motion and repeats it, or replays its numbers."""
     c.orbit.to_html(folder / "a.html")
-    held = re.search(r'<script type="application/json" id="data">(.*?)</script>', (folder / "a.html").read_text())
-    assert held is not None
-    data = json.loads(held[1])
+    match = re.search(r'<script type="application/json" id="data">(.*?)</script>', (folder / "a.html").read_text())
+    assert match is not None
+    data = json.loads(match[1])
     if "replay" in data:
         energy = np.frombuffer(base64.b64decode(data["replay"]["energy"]))
         np.testing.assert_allclose(energy, c.balance, 1e-12)
@@ -450,18 +450,18 @@ def page(c: Case, folder: Path) -> None:
 @ability
 def invariants(c: Case, _: Path) -> None:
     """The drift of the energy is that of the energies, less the work of forces."""
-    found = nh.invariants(c.orbit)
-    assert (found.states, found.steps) == (1 + STEPS, STEPS)
-    np.testing.assert_allclose(found.energy_drift, np.ptp(c.balance) / np.abs(c.balance).max(), 0.2, 1e-14)
+    result = nh.invariants(c.orbit)
+    assert (result.states, result.steps) == (1 + STEPS, STEPS)
+    np.testing.assert_allclose(result.energy_drift, np.ptp(c.balance) / np.abs(c.balance).max(), 0.2, 1e-14)
 
 
 @ability
 def compare(c: Case, _: Path) -> None:
     """Errors against the run with half the time step are the differences of their momenta and energies."""
-    found, other = nh.compare(c.orbit, c.halves), c.halves.chosen(slice(0, None, 2))
+    result, other = nh.compare(c.orbit, c.halves), c.halves.chosen(slice(0, None, 2))
     errors = np.linalg.norm(c.orbit.restricted_momentum - other.restricted_momentum, axis=1)
-    np.testing.assert_allclose(found.momentum, errors, 1e-12, 1e-15)
-    np.testing.assert_allclose(found.energy, c.orbit.energy - other.energy, 0, 1e-14)
+    np.testing.assert_allclose(result.momentum, errors, 1e-12, 1e-15)
+    np.testing.assert_allclose(result.energy, c.orbit.energy - other.energy, 0, 1e-14)
 
 
 @ability
@@ -478,9 +478,9 @@ def gradient(c: Case, _: Path) -> None:
         return run(c.discrete, **{name: value}, **rest, steps=3).configuration[-1].ravel()[-2]
 
     with jax.enable_x64(True):
-        found = np.asarray(jax.grad(functools.partial(end, nh.rollout))(np.asarray(start, dtype=float)))
+        result = np.asarray(jax.grad(functools.partial(end, nh.rollout))(np.asarray(start, dtype=float)))
     way = 1e-4 * np.cos(np.arange(len(start)))
-    np.testing.assert_allclose(found @ way, (end(nh.simulate, start + way) - end(nh.simulate, start - way)) / 2, 1e-6)
+    np.testing.assert_allclose(result @ way, (end(nh.simulate, start + way) - end(nh.simulate, start - way)) / 2, 1e-6)
 
 
 @ability
@@ -508,8 +508,8 @@ def scenario_file(c: Case, folder: Path) -> None:
     from nonholo.cli._app import app
 
     (folder / "a.toml").write_text(scenario_text(c))
-    given = ["simulate", str(folder / "a.toml"), "-o", str(folder / "a.zarr"), "--no-plot", "--json"]
-    result = CliRunner().invoke(app, given)
+    arguments = ["simulate", str(folder / "a.toml"), "-o", str(folder / "a.zarr"), "--no-plot", "--json"]
+    result = CliRunner().invoke(app, arguments)
     if result.exit_code == 2:
         raise ValueError(result.output)
     assert result.exit_code == 0, result.output

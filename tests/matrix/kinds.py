@@ -97,8 +97,8 @@ def _tensor(about: str, system: Any, tensor: Any, kind: str = "", parameter: str
 def _plane(about: str, load: Callable[[Any], Any], *traits: str, **more: Any) -> Kind:
     """Return the kind of a sleigh of the plane under a load."""
     own = "function" in traits
-    made = functools.partial(_loaded, load)
-    return Kind(about, made, "a", (0.5, 0.7), {} if own else _SLEIGH, traits=frozenset(traits), **more)
+    things = functools.partial(_loaded, load)
+    return Kind(about, things, "a", (0.5, 0.7), {} if own else _SLEIGH, traits=frozenset(traits), **more)
 
 
 def _loaded(load: Callable[[Any], Any], a: float) -> Any:

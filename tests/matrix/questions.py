@@ -31,8 +31,8 @@ def vector_field(c: Case, _: Path) -> None:
     middle, step = 4 * c.h, 0.1 * c.h
     rows = states(c, c.flown([0.0, *(middle + step * np.arange(-3, 4))]))[1:]
     wanted = sum(weight * rows[3 + k] for k, weight in _TIME.items()) / step
-    found = nh.vector_field(c.system)(middle, rows[3])
-    np.testing.assert_allclose(found, wanted, 0, 1e-8 * np.abs(wanted).max())
+    result = nh.vector_field(c.system)(middle, rows[3])
+    np.testing.assert_allclose(result, wanted, 0, 1e-8 * np.abs(wanted).max())
 
 
 Run = Callable[[dict[str, Any]], Any]
@@ -78,9 +78,9 @@ def names_of(c: Case) -> tuple[str, ...]:
     return *(f"xi{i + 1}" for i in range(c.system.group.dim)), *(f"{letter}{i + 1}" for i in range(k))
 
 
-def chosen(c: Case, found: Any) -> list[int]:
+def chosen(c: Case, result: Any) -> list[int]:
     """Return the rows of changes that are states of a linearization."""
-    return [names_of(c).index(name) for name in found.names]
+    return [names_of(c).index(name) for name in result.names]
 
 
 def steady(c: Case) -> Any:
@@ -107,9 +107,9 @@ def stepping(discrete: Any, steps: int = 1, **how: Any) -> Run:
 def linearize(c: Case, _: Path) -> None:
     """Beside a steady motion small changes of runs of the flow go where the exponential of the matrix takes them."""
     ready = steady(c)
-    found, time = nh.linearize(ready.system, **start_of(ready)), 2 * c.h
+    result, time = nh.linearize(ready.system, **start_of(ready)), 2 * c.h
     _, (before, after) = changes(c, flowing(ready.system, time), start_of(ready), 3)
-    rows, carried = chosen(c, found), expm(time * found.matrix)
+    rows, carried = chosen(c, result), expm(time * result.matrix)
     np.testing.assert_allclose(after[rows], carried @ before[rows], 0, 1e-7 * np.abs(after[rows]).max())
 
 
@@ -118,10 +118,10 @@ def linearize_maps(c: Case, _: Path) -> None:
     """Small changes of a step are those of the matrix of the map."""
     ready = steady(c)
     discrete = nh.discretize(ready.system, c.h)
-    found = nh.linearize(discrete, **start_of(ready))
+    result = nh.linearize(discrete, **start_of(ready))
     _, (before, after) = changes(c, stepping(discrete), start_of(ready), 3)
-    rows = chosen(c, found)
-    np.testing.assert_allclose(after[rows], found.matrix @ before[rows], 0, 1e-7 * np.abs(after[rows]).max())
+    rows = chosen(c, result)
+    np.testing.assert_allclose(after[rows], result.matrix @ before[rows], 0, 1e-7 * np.abs(after[rows]).max())
 
 
 @ability
@@ -131,14 +131,14 @@ def equilibria(c: Case, _: Path) -> None:
     start, field = start_of(ready), nh.vector_field(ready.system)
     beside, discrete = _beside(c, ready), nh.discretize(ready.system, c.h)
     for subject in (ready.system, discrete):
-        found = nh.equilibria(subject, **beside)
-        there, rows = start_of(found), chosen(c, found.linearization)
-        assert np.abs(found.configuration - start["configuration"]).max() < 0.2
-        orbit, v = stepping(discrete, 2)(there), len(found.body_velocity) if c.in_coordinates else c.system.rank
+        result = nh.equilibria(subject, **beside)
+        there, rows = start_of(result), chosen(c, result.linearization)
+        assert np.abs(result.configuration - start["configuration"]).max() < 0.2
+        orbit, v = stepping(discrete, 2)(there), len(result.body_velocity) if c.in_coordinates else c.system.rank
         rates = np.diff(seen_from(c, orbit, orbit), axis=0) / c.h
         if subject is not discrete:
             rate = field(0.0, states(c, flowing(ready.system, c.h)(there))[0])
-            place = rate[:-v] if found.configuration.ndim == 1 else np.zeros(c.system.group.dim)
+            place = rate[:-v] if result.configuration.ndim == 1 else np.zeros(c.system.group.dim)
             rates = np.concatenate([place, rate[-v:] if c.in_coordinates else rate[:v]])[None]
         np.testing.assert_allclose(rates[:, rows], 0, 0, 1e-8)
 
@@ -178,8 +178,8 @@ def tangent_maps(c: Case, _: Path) -> None:
 def lyapunov_exponents(c: Case, _: Path) -> None:
     """Their sum is the rate at which differences of runs say that volumes grow."""
     orbit, wanted = stretches(c, stepping(c.discrete, 3, **c.run))
-    found = nh.lyapunov_exponents(orbit)
-    np.testing.assert_allclose(found.sum() * orbit.time[-1], np.log(wanted).sum(), 0, 1e-6)
+    result = nh.lyapunov_exponents(orbit)
+    np.testing.assert_allclose(result.sum() * orbit.time[-1], np.log(wanted).sum(), 0, 1e-6)
 
 
 @ability
@@ -202,9 +202,9 @@ def fit(c: Case, folder: Path) -> None:
     orbit = nh.simulate(nh.discretize(ready.system, c.h), steps=40, **start_of(ready))
     orbit.to_csv(folder / "a.csv")
     system_of, truth = BODIES.get(c.name) or (lambda p: ready.system.with_parameters(**p), ready.system.parameters)
-    found = nh.fit(system_of, folder / "a.csv", guess, time_step=c.h)
+    result = nh.fit(system_of, folder / "a.csv", guess, time_step=c.h)
     for name in guess:
-        np.testing.assert_allclose(found.parameters[name], truth[name], 1e-6, err_msg=name)
+        np.testing.assert_allclose(result.parameters[name], truth[name], 1e-6, err_msg=name)
 
 
 def controlled(c: Case) -> dict[str, Any]:
@@ -253,15 +253,15 @@ def critical_values(c: Case, _: Path) -> None:
         return nh.linearize(ready.system, **start(speed))
 
     def growing(speed: float) -> int:
-        found = linear(speed)
-        _, (before, after) = changes(c, flowing(ready.system, c.h), start(speed), len(found.names))
-        rows = chosen(c, found)
+        result = linear(speed)
+        _, (before, after) = changes(c, flowing(ready.system, c.h), start(speed), len(result.names))
+        rows = chosen(c, result)
         return int((np.abs(np.linalg.eigvals(np.linalg.solve(before[rows].T, after[rows].T))) > 1 + 1e-5).sum())
 
-    found = nh.critical_values(linear, interval, samples=12)
-    counts = [growing(speed) for speed in (found[:, None] + [-0.05, 0.05] if len(found) else interval).ravel()]
-    assert len(found) == 0 or np.diff(np.reshape(counts, (-1, 2))).all()
-    assert len(found) > 0 or counts[0] == counts[1]
+    result = nh.critical_values(linear, interval, samples=12)
+    counts = [growing(speed) for speed in (result[:, None] + [-0.05, 0.05] if len(result) else interval).ravel()]
+    assert len(result) == 0 or np.diff(np.reshape(counts, (-1, 2))).all()
+    assert len(result) > 0 or counts[0] == counts[1]
 
 
 def _pull(time: Any, place: Any, velocity: Any) -> Any:
@@ -299,10 +299,10 @@ def policy(c: Case, _: Path) -> None:
 def steer(c: Case, _: Path) -> None:
     """A run under its forces ends at the goal, one that other forces reach with more effort."""
     steps, n = 12, c.orbit.body_velocity.shape[1]
-    known = 0.1 * np.cos(np.arange(steps)[:, None] + np.arange(n))
-    goal = nh.rollout(c.discrete, steps=steps, controls=known, **controlled(c)).configuration[-1]
-    found = nh.steer(c.discrete, controlled(c), {"configuration": goal}, steps=steps)
-    assert found.converged
-    q = under(c, found.controls).configuration[-1]
+    reference = 0.1 * np.cos(np.arange(steps)[:, None] + np.arange(n))
+    goal = nh.rollout(c.discrete, steps=steps, controls=reference, **controlled(c)).configuration[-1]
+    result = nh.steer(c.discrete, controlled(c), {"configuration": goal}, steps=steps)
+    assert result.converged
+    q = under(c, result.controls).configuration[-1]
     np.testing.assert_allclose(q, goal, 0, 1e-8 * np.abs(goal).max())
-    assert found.cost <= c.h * (known**2).sum() / 2
+    assert result.cost <= c.h * (reference**2).sum() / 2

@@ -109,13 +109,13 @@ def _notices(finding: Finding, function: str) -> bool:
 
 @contextlib.contextmanager
 def _in_force(mutant: Mutant) -> Iterator[None]:
-    kept = dict(vars(mutant.module))
+    before = dict(vars(mutant.module))
     exec(compile(mutant.tree, str(mutant), "exec"), vars(mutant.module))  # noqa: S102 (our own source)
     _forget()
     try:
         yield
     finally:
-        vars(mutant.module).update(kept)
+        vars(mutant.module).update(before)
         _forget()
 
 
@@ -131,8 +131,8 @@ def _forget() -> None:
 def _changes(function: ast.Module) -> list[tuple[ast.AST, ast.AST]]:
     """Return what can be changed, each with the node that holds it."""
     pairs = [(child, node) for node in ast.walk(function) for child in ast.iter_child_nodes(node)]
-    found = [(child, node) for child, node in pairs if _is_sign(child) or _is_factor(child, node)]
-    return found or [(child, node) for child, node in pairs if _is_product(child)][:1]
+    result = [(child, node) for child, node in pairs if _is_sign(child) or _is_factor(child, node)]
+    return result or [(child, node) for child, node in pairs if _is_product(child)][:1]
 
 
 def _is_sign(node: ast.AST) -> bool:
@@ -152,8 +152,8 @@ def _is_product(node: ast.AST) -> bool:
 
 def _apply(node: ast.AST, holder: ast.AST) -> str:
     """Change a node and return the change in words."""
-    shown = holder if isinstance(node, ast.Constant) else node
-    before = ast.unparse(shown)
+    place = holder if isinstance(node, ast.Constant) else node
+    before = ast.unparse(place)
     if isinstance(node, ast.UnaryOp):
         node.op = ast.UAdd()
     elif isinstance(node, ast.Constant):
@@ -162,28 +162,28 @@ def _apply(node: ast.AST, holder: ast.AST) -> str:
         node.left = ast.UnaryOp(ast.USub(), node.left)
     else:
         node.op = FLIPPED[type(node.op)]()
-    return f"{before} -> {ast.unparse(shown)}"
+    return f"{before} -> {ast.unparse(text)}"
 
 
 def _depth(finding: Finding, target: CodeType) -> int | None:
     """Return how many calls lie between a finding and a function, by the names in their codes."""
-    level, seen = [finding.measure], set()
+    level, codes = [finding.measure], set()
     for depth in range(12):
         if any(function.__code__ is target for function in level):
             return depth
-        seen |= {function.__code__ for function in level}
+        codes |= {function.__code__ for function in level}
         called = [other for function in level for other in _called(function)]
-        level = [function for function in called if function.__code__ not in seen]
+        level = [function for function in called if function.__code__ not in codes]
     return None
 
 
 @functools.cache
 def _called(function: FunctionType) -> tuple[FunctionType, ...]:
     names = _names(function.__code__)
-    known = [function.__globals__[name] for name in names if name in function.__globals__]
-    rooms = [value for value in known if isinstance(value, ModuleType)]
-    known += [vars(module)[name] for module in rooms for name in names if name in vars(module)]
-    plain = [inspect.unwrap(value) for value in known if callable(value)]
+    reference = [function.__globals__[name] for name in names if name in function.__globals__]
+    rooms = [value for value in reference if isinstance(value, ModuleType)]
+    reference += [vars(module)[name] for module in rooms for name in names if name in vars(module)]
+    plain = [inspect.unwrap(value) for value in reference if callable(value)]
     functions = [value for value in plain if isinstance(value, FunctionType)]
     return tuple(value for value in functions if value.__module__.startswith("nonholo_paper"))
 
@@ -200,12 +200,12 @@ def main(chosen: list[str]) -> int:
         if chosen and module.__name__.rpartition(".")[2] not in chosen:
             continue
         for name in functions(module):
-            found = users(module, name)
-            complaints += [] if found else [f"not reached: {module.__name__}.{name}"]
-            complaints += [] if survives(unchanged(module, name), found) else [f"always red: {module.__name__}.{name}"]
+            result = users(module, name)
+            complaints += [] if result else [f"not reached: {module.__name__}.{name}"]
+            complaints += [] if survives(unchanged(module, name), result) else [f"always red: {module.__name__}.{name}"]
             own = list(mutants(module, name))
             count += len(own)
-            complaints += [f"survives: {mutant}" for mutant in own if survives(mutant, found)]
+            complaints += [f"survives: {mutant}" for mutant in own if survives(mutant, result)]
     lines = [*complaints, f"{count} mutants, {len(complaints)} complaints, {time.perf_counter() - begun:.0f} s"]
     sys.stdout.write("\n".join(lines) + "\n")
     return bool(complaints)

@@ -53,6 +53,6 @@ def test_both_puts_two_precisions_under_one_tolerance() -> None:
 @pytest.mark.parametrize("body", [TOP, TOP_4], ids=["top", "top in 4"])
 def test_poses_are_products_of_displacements(body: Body) -> None:
     """There is one pose more than displacements."""
-    poses, found = sequences.poses(body), sequences.displacements(body)
-    assert len(poses) == len(found) + 1 == sequences.STEPS + 1
-    assert twin.worst(*(g**-1 * r - W for g, r, W in zip(poses, poses[1:], found, strict=False))) < ROUNDING
+    poses, result = sequences.poses(body), sequences.displacements(body)
+    assert len(poses) == len(result) + 1 == sequences.STEPS + 1
+    assert twin.worst(*(g**-1 * r - W for g, r, W in zip(poses, poses[1:], result, strict=False))) < ROUNDING

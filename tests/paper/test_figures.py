@@ -28,8 +28,8 @@ def test_every_figure_is_drawn() -> None:
 
 def test_labels_are_known() -> None:
     """The labels of a figure, and the one of its finding, are labels or claims of the checklist."""
-    known = {label for part in sections() for label in (*part.labels, *part.claims)}
-    assert {label for figure in FIGURES.values() for label in (*figure.labels, figure.finding.label)} <= known
+    reference = {label for part in sections() for label in (*part.labels, *part.claims)}
+    assert {label for figure in FIGURES.values() for label in (*figure.labels, figure.finding.label)} <= reference
     assert {figure.finding.kind for figure in FIGURES.values()} == {"figure"}
 
 
@@ -58,12 +58,12 @@ def test_a_figure_can_be_saved(suffix: str) -> None:
 def test_a_shifted_dot_is_noticed() -> None:
     """The finding of the momentum dynamics fails if the dots are not where the flows end."""
     _, drawn = suslov_figure.picture()
-    kept = np.array(drawn.stable.get_offsets())
+    rows = np.array(drawn.stable.get_offsets())
     try:
-        drawn.stable.set_offsets(kept + 1e-6)
+        drawn.stable.set_offsets(rows + 1e-6)
         assert not suslov_figure.FIGURE.finding.holds(suslov_figure.FIGURE.finding.measure())
     finally:
-        drawn.stable.set_offsets(kept)
+        drawn.stable.set_offsets(rows)
 
 
 def test_swapped_equilibria_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

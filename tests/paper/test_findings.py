@@ -16,8 +16,8 @@ SAMPLE = 40  # of all mutants; `python tests/paper/mutations.py` tries every one
 
 def sample() -> list[Mutant]:
     """Return a part of the mutants, the same in every run."""
-    known = all_mutants()
-    return random.Random(5).sample(known, min(SAMPLE, len(known)))  # noqa: S311 (a choice of tests)
+    reference = all_mutants()
+    return random.Random(5).sample(reference, min(SAMPLE, len(reference)))  # noqa: S311 (a choice of tests)
 
 
 @pytest.mark.profile("paper", keep=["energy_theorem*", "suslov_euler_angles*"])
@@ -78,8 +78,8 @@ ADDED = [Verdict.SETTLED, Verdict.REMARK]
 
 def _finding(verdict: Verdict, claim: str = "\u201cclaim\u201d", **changed: object) -> Finding:
     errata, corrected = ("S1",) if verdict.is_erratum else (), None if verdict is Verdict.AS_PRINTED else "right"
-    given = {"errata": errata, "corrected": corrected} | changed
-    build = finding("label", "remark", "Section 1", claim, verdict=verdict, tolerance=1e-9, **given)
+    arguments = {"errata": errata, "corrected": corrected} | changed
+    build = finding("label", "remark", "Section 1", claim, verdict=verdict, tolerance=1e-9, **arguments)
     return build(lambda: Measured(0.0))
 
 
@@ -113,14 +113,14 @@ CORRECTED, ROW, QUOTED = "have `corrected` exactly where", "have a row of the er
 
 
 @pytest.mark.parametrize(
-    ("verdict", "given", "words"),
+    ("verdict", "values", "words"),
     [
         *((each, {"corrected": "right" if each is Verdict.AS_PRINTED else None}, CORRECTED) for each in Verdict),
         *((each, {"errata": () if each.is_erratum else ("S1",)}, ROW) for each in Verdict),
         *((each, {"claim": "claim"}, QUOTED) for each in (*ERRATA, *ADDED)),
     ],
 )
-def test_what_a_verdict_needs(verdict: Verdict, given: dict[str, object], words: str) -> None:
+def test_what_a_verdict_needs(verdict: Verdict, values: dict[str, object], words: str) -> None:
     """A correction and a row come exactly with what is to be corrected; what is not right as printed is quoted."""
     with pytest.raises(ValueError, match=f"'label' must {words}"):
-        _finding(verdict, **given)
+        _finding(verdict, **values)

@@ -91,10 +91,10 @@ def test_page_is_well_formed_and_alone() -> None:
 def test_page_says_what_was_found() -> None:
     """Claim, verdict, correction, numbers and failure stand on the page."""
     text = page(results("plus", "minus", "raises"), "Only a part.")
-    told = ["1 of 3 fail", "correction holds", "It is wrong.", "Right:</strong> right", Verdict.FALSE.meaning]
-    told += ["1.0e-16", "1.0e-12", "inf", "Only a part.", "a &lt; b", "no &lt;number&gt;"]
-    told += ["S1", "one sum", "A line, <math"]
-    assert [words for words in told if words not in text] == []
+    report = ["1 of 3 fail", "correction holds", "It is wrong.", "Right:</strong> right", Verdict.FALSE.meaning]
+    report += ["1.0e-16", "1.0e-12", "inf", "Only a part.", "a &lt; b", "no &lt;number&gt;"]
+    report += ["S1", "one sum", "A line, <math"]
+    assert [words for words in report if words not in text] == []
 
 
 def test_page_has_no_script_and_no_network() -> None:
@@ -144,13 +144,13 @@ def test_folder(tmp_path: Path) -> None:
         write_folder(folder, results("plus", "minus", "raises"))
     files = sorted(str(path.relative_to(folder)) for path in folder.rglob("*.*"))
     assert files == ["figures/line.pdf", "figures/line.png", "figures/line.svg", "findings.json", "index.html"]
-    told = json.loads((folder / "findings.json").read_text())
-    assert [row["label"] for row in told] == ["plus", "minus", "raises"]
-    assert [row["holds"] for row in told] == [True, True, False]
-    assert [row["verdict"] for row in told] == ["right as printed", "false", "right as printed"]
-    assert (told[0]["measured"], told[1]["printed_measured"], told[2]["measured"]) == (1e-16, "inf", None)
+    report = json.loads((folder / "findings.json").read_text())
+    assert [row["label"] for row in report] == ["plus", "minus", "raises"]
+    assert [row["holds"] for row in report] == [True, True, False]
+    assert [row["verdict"] for row in report] == ["right as printed", "false", "right as printed"]
+    assert (report[0]["measured"], report[1]["printed_measured"], report[2]["measured"]) == (1e-16, "inf", None)
     keys = {"kind", "claim", "verdict", "corrected", "tolerance", "seconds", "source", "errata", "note", "figure"}
-    assert keys <= set(told[0])
+    assert keys <= set(report[0])
 
 
 def test_foreign_files_stay(tmp_path: Path) -> None:

@@ -21,14 +21,14 @@ from nonholo.plot.animation._scenes import part_of, part_of_flow, shown_states
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])
 def test_number_and_time_of_frames(kind: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """A GIF has as many frames as asked for, all different, at the rate asked for, and progress is reported."""
-    told = []
+    report = []
     path = nh.plot.animate(
-        request.getfixturevalue(kind), tmp_path / "a.gif", frames=7, fps=20, progress=lambda *done: told.append(done)
+        request.getfixturevalue(kind), tmp_path / "a.gif", frames=7, fps=20, progress=lambda *done: report.append(done)
     )
     with Image.open(path) as movie:
         assert movie.n_frames == 7
         assert movie.info["duration"] == 50
-    assert told == [(k, 7) for k in range(1, 8)]
+    assert report == [(k, 7) for k in range(1, 8)]
 
 
 @pytest.mark.profile("paper", keep=["one state"])
@@ -44,10 +44,10 @@ def test_long_orbits_show_the_transition() -> None:
     """A stretch about the fastest change is shown in steps that the eye can follow; short orbits are shown whole."""
     orbit = top_run((0.465, 0.75, 0.0), steps=20000)
     fastest = int(np.abs(np.diff(orbit.reduced_momentum, axis=0)).sum(axis=1).argmax())
-    shown = shown_states(orbit, 0.3, 100)
-    assert len(shown) == 100
-    assert set(np.diff(shown)) == {3}
-    assert shown[0] < fastest < shown[-1]
+    states = shown_states(orbit, 0.3, 100)
+    assert len(states) == 100
+    assert set(np.diff(states)) == {3}
+    assert states[0] < fastest < states[-1]
     assert shown_states(orbit[:51], 0.3, 26).tolist() == list(range(0, 51, 2))
 
 
@@ -162,8 +162,8 @@ def test_films_of_ffmpeg(kind: str, suffix: str, codec: str, tmp_path: Path, req
     """A film has the frames, the rate and the size asked for, in pixels, and its frames differ."""
     orbit, path, done = request.getfixturevalue(kind), tmp_path / f"a.{suffix}", []
     nh.plot.animate(orbit, path, frames=9, fps=20, size=(6.4, 3.6), progress=lambda *count: done.append(count))
-    asked = "stream=codec_name,width,height,r_frame_rate,nb_read_frames,pix_fmt"
-    command = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", asked, "-of", "json", str(path)]
+    entries = "stream=codec_name,width,height,r_frame_rate,nb_read_frames,pix_fmt"
+    command = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", entries, "-of", "json", str(path)]
     (stream,) = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)["streams"]  # noqa: S603
     assert stream == {
         "codec_name": codec, "width": 640, "height": 360, "pix_fmt": "yuv420p", "r_frame_rate": "20/1",

@@ -20,9 +20,11 @@ INSIDE, OUTSIDE = [0.5, -2.2], [0.5, 1.0]
 def test_four_real_values_are_on_the_disc() -> None:
     """The values y = z / z_0 of the rational example are at radius (2 / 180 degrees) atan|y| in the direction of y."""
     picture = nh.plot.branches(FOUR, displacement=EQUILIBRIUM)
-    known = np.array([[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]])
-    size = np.linalg.norm(known, axis=1, keepdims=True)
-    expected = known / size * 2 * np.arctan(size) / np.pi
+    reference = np.array(
+        [[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]]
+    )
+    size = np.linalg.norm(reference, axis=1, keepdims=True)
+    expected = reference / size * 2 * np.arctan(size) / np.pi
     assert np.allclose(picture.principal.get_offsets(), expected[:1], atol=1e-9)
     assert np.allclose(picture.others.get_offsets(), expected[1:], atol=1e-8)  # to the digits of the known values
     assert np.allclose(picture.present.get_offsets(), expected[:1], atol=1e-9)
@@ -134,8 +136,8 @@ def test_images_on_the_portrait_are_values_of_the_map() -> None:
     """The far end of an edge from the first image of the orbit is reached by one of its other values."""
     picture = nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="all")
     ends = np.array(picture.edges.get_segments())
-    found = nh.branches(SLEIGH, displacement=ORBIT.displacement[0])
-    reached = [nh.branches(SLEIGH, displacement=W.real).momentum[0].real for W in found.displacement[1:]]
+    result = nh.branches(SLEIGH, displacement=ORBIT.displacement[0])
+    reached = [nh.branches(SLEIGH, displacement=W.real).momentum[0].real for W in result.displacement[1:]]
     expected = SLEIGH.system.restrict(np.array(reached)) @ SLEIGH.system.frame_map.T
     for place in expected:
         assert np.linalg.norm(ends[:, 1] - place, axis=1).min() < 1e-9

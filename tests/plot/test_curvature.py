@@ -28,12 +28,12 @@ def middles(low: float, high: float) -> np.ndarray:
 def test_cells_show_what_counterclockwise_gaits_gain() -> None:
     """Of the car -(rho / l) / cos(phi)^2 for turning, in the middle of each cell; nothing of the others."""
     picture = nh.plot.curvature(car(), bounds=((-1, 2), (-1.2, 0.9)))
-    shown = np.ma.getdata(picture.values.get_array())
+    values = np.ma.getdata(picture.values.get_array())
     wanted = -0.25 / np.cos(middles(-1.2, 0.9)) ** 2
-    np.testing.assert_allclose(shown, np.broadcast_to(wanted[:, None], (120, 120)), rtol=1e-12)
+    np.testing.assert_allclose(values, np.broadcast_to(wanted[:, None], (120, 120)), rtol=1e-12)
     assert (picture.zero, picture.gait) == (None, None)
     swapped = nh.plot.curvature(car(), along=("phi", "psi"), bounds=((-1.2, 0.9), (-1, 2)))
-    np.testing.assert_allclose(np.ma.getdata(swapped.values.get_array()), -shown.T, rtol=1e-12)
+    np.testing.assert_allclose(np.ma.getdata(swapped.values.get_array()), -values.T, rtol=1e-12)
     assert not np.ma.getdata(nh.plot.curvature(car(), "v2").values.get_array()).any()
 
 

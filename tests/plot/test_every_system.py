@@ -78,8 +78,8 @@ CASES: dict[str, tuple[Any, list[str]]] = {  # a system, which runs, or what mak
 
 
 def _orbit(name: str) -> nh.Orbit:
-    made = CASES[name][0]
-    return made() if inspect.isfunction(made) else run_of(made)
+    things = CASES[name][0]
+    return things() if inspect.isfunction(things) else run_of(things)
 
 
 def _titles(orbit: nh.Orbit, **options: object) -> list[str]:

@@ -120,7 +120,7 @@ def test_curves_do_not_cross_the_rim() -> None:
 def test_a_map_or_what_was_computed_of_it(discrete: nh.Discretization) -> None:
     """Pictures of loci and of curves take both, and draw the same points."""
     for draw in (nh.plot.momentum_locus, nh.plot.locus_section):
-        one, other = (draw(given).axes for given in (discrete, nh.momentum_locus(discrete)))
+        one, other = (draw(arguments).axes for arguments in (discrete, nh.momentum_locus(discrete)))
         for line, same in zip(one.lines, other.lines, strict=True):
             assert np.array_equal(line.get_data(), same.get_data())
     energies = [0.3, 0.4]
@@ -134,8 +134,8 @@ def test_branch_counts_draw_the_deltoid() -> None:
     """Boundary and cusps are those of `deltoid` in the plane of pi and p_1; the orbit's dots are its momenta."""
     orbit = run(SLEIGH)
     picture = nh.plot.branch_counts(SLEIGH, orbit)
-    found = deltoid(SLEIGH)
-    expected = found.cusps + np.outer(0.3 * found.cusps[:, 1], [1.0, 0.0])
+    result = deltoid(SLEIGH)
+    expected = result.cusps + np.outer(0.3 * result.cusps[:, 1], [1.0, 0.0])
     assert np.allclose(picture.cusps.get_offsets(), expected)
     assert np.allclose(picture.boundary.get_xydata()[0], expected[0])
     assert np.allclose(orbit.system.canonical.constrained_energy(picture.level.get_xydata()), orbit.energy[0])
@@ -164,12 +164,12 @@ def _crossings(steps: int) -> nh.Crossings:
 
 def test_dots_are_the_quantities_at_the_crossings() -> None:
     """Each dot is a crossing, with the two quantities, whose names the axes bear, as place, the time as color."""
-    found, labels = _crossings(100), ("x", "heading")
-    drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading, labels=labels)
+    result, labels = _crossings(100), ("x", "heading")
+    drawn = nh.plot.section(result, lambda states: states.position[:, 0], lambda states: states.heading, labels=labels)
     assert (drawn.axes.get_xlabel(), drawn.axes.get_ylabel()) == labels
-    assert np.array_equal(drawn.points, np.stack([found.states.position[:, 0], found.states.heading], axis=1))
+    assert np.array_equal(drawn.points, np.stack([result.states.position[:, 0], result.states.heading], axis=1))
     assert np.array_equal(drawn.dots.get_offsets(), drawn.points)
-    assert np.array_equal(drawn.dots.get_array(), found.time)
+    assert np.array_equal(drawn.dots.get_array(), result.time)
 
 
 # A section needs a crossing; a quantity one number for each, and the error names which one has not.

@@ -106,9 +106,9 @@ def test_title_name_and_color(name: str) -> None:
     assert labels.count("this one") == 1
     assert "this one" in [text.get_text() for text in owner.get_legend().get_texts()]
     handle = handles[labels.index("this one")]
-    shown = handle.get_color() if hasattr(handle, "get_color") else handle.get_facecolor()
+    color = handle.get_color() if hasattr(handle, "get_color") else handle.get_facecolor()
     assert np.allclose(
-        to_rgba(np.reshape(shown, -1)[:4] if not isinstance(shown, str) else shown)[:3], to_rgba("#123456")[:3]
+        to_rgba(np.reshape(color, -1)[:4] if not isinstance(color, str) else color)[:3], to_rgba("#123456")[:3]
     )
 
 

@@ -213,8 +213,8 @@ def test_blades_by_their_definition(pair: Pair) -> None:
     """Admissible velocities are along the blade, the contact point is next to the origin, the mass where it is."""
     system, group = pair.equal, nh.SE(2)
     blade, tensor = blade_of_system(system), system.homogeneous_mass_tensor
-    seen = system.constraint_subspace @ group.adjoint(group.inverse(blade.frame)).T
-    assert np.allclose(seen[:, 2], 0.0, atol=1e-14)
+    velocities = system.constraint_subspace @ group.adjoint(group.inverse(blade.frame)).T
+    assert np.allclose(velocities[:, 2], 0.0, atol=1e-14)
     assert np.isclose(blade.frame[:2, 2] @ blade.frame[:2, 1], 0.0, atol=1e-14)
     assert np.allclose(blade.frame @ [*blade.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
 

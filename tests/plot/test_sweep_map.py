@@ -19,8 +19,8 @@ def _numbers(block: nh.MemberBlock) -> dict[str, Any]:
     b = block["b"]
     value = block["a"] + 10 * b
     ended = np.where(b == 2, 1, np.where(b == 3, 2, 0))
-    told = {"long_name": "a number", "units": "rad"}
-    return {"value": ((), value, told), "many": (("part",), value[:, None] * [1, 2]), "outcome": ended}
+    report = {"long_name": "a number", "units": "rad"}
+    return {"value": ((), value, report), "many": (("part",), value[:, None] * [1, 2]), "outcome": ended}
 
 
 @pytest.fixture(scope="module")
@@ -54,20 +54,20 @@ def test_borders_of_a_geometric_axis() -> None:
     assert borders(np.array([7.0])).tolist() == [6.5, 7.5]
 
 
-@pytest.mark.parametrize(("values", "told"), [(A, True), (B, False), (A[:2], False), (-A, False), (B + 1, False)])
-def test_geometric_axes(values: np.ndarray, told: bool) -> None:
+@pytest.mark.parametrize(("values", "message"), [(A, True), (B, False), (A[:2], False), (-A, False), (B + 1, False)])
+def test_geometric_axes(values: np.ndarray, message: bool) -> None:
     """An axis is geometric if its values are positive with one quotient and without one difference."""
-    assert is_geometric(values) is told
+    assert is_geometric(values) is message
 
 
 def test_each_value_is_in_its_cell(plane: xarray.Dataset) -> None:
     """The color of a cell is the value of the member in it; the cells of members that failed are empty."""
     picture = nh.plot.sweep_map(plane, "value")
-    shown = picture.drawn.get_array()
-    assert shown.shape == (4, 3)
+    values = picture.drawn.get_array()
+    assert values.shape == (4, 3)
     expected = A + 10 * B[:, None]
-    assert np.array_equal(shown[:2], expected[:2])
-    assert shown.mask[2:].all()
+    assert np.array_equal(values[:2], expected[:2])
+    assert values.mask[2:].all()
     corners = picture.drawn.get_coordinates()
     assert np.allclose(corners[0, :, 0], borders(A))
     assert np.allclose(corners[:, 0, 1], borders(B))
@@ -105,8 +105,8 @@ def test_axes_can_be_exchanged(plane: xarray.Dataset) -> None:
 
 def test_descending_values_are_sorted(tmp_path: Path) -> None:
     """The order of the values of a design does not change the picture."""
-    found = nh.sweep(_numbers, nh.Grid({"a": A[::-1], "b": B}), tmp_path / "s.zarr")
-    assert np.array_equal(nh.plot.sweep_map(found, "value").drawn.get_array()[0], A)
+    result = nh.sweep(_numbers, nh.Grid({"a": A[::-1], "b": B}), tmp_path / "s.zarr")
+    assert np.array_equal(nh.plot.sweep_map(result, "value").drawn.get_array()[0], A)
 
 
 def test_outcomes_as_a_map(plane: xarray.Dataset) -> None:
@@ -169,7 +169,7 @@ def test_bars_of_outcomes(draws: xarray.Dataset) -> None:
 
 
 @pytest.mark.parametrize(
-    ("result", "arguments", "told"),
+    ("result", "arguments", "message"),
     [
         ("space", {"quantity": "nothing"}, "must be one of 'value', 'many', 'outcome'|must be one of 'many'"),
         ("space", {"quantity": "many"}, "Pass result.isel\\(part=0\\)"),
@@ -183,12 +183,12 @@ def test_bars_of_outcomes(draws: xarray.Dataset) -> None:
     ],
 )
 def test_what_is_refused(
-    plane: xarray.Dataset, draws: xarray.Dataset, result: str, arguments: dict[str, str], told: str
+    plane: xarray.Dataset, draws: xarray.Dataset, result: str, arguments: dict[str, str], message: str
 ) -> None:
     """A quantity or an axis that is not there, an axis twice or too many, no axes, and draws over y alone."""
     results = {"plane": plane, "draws": draws, "nothing": xarray.Dataset()}
     results |= {"one member": plane.isel(a=0, b=0), "space": plane.expand_dims(c=[5.0, 6.0], axis=2)}
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         nh.plot.sweep_map(results[result], **arguments)
 
 
@@ -203,5 +203,5 @@ def test_draws_that_all_failed(draws: xarray.Dataset) -> None:
 def test_axis_of_vectors_is_numbered(tmp_path: Path) -> None:
     """Vectors along an axis of a grid have no place on it but their number."""
     design = nh.Grid({"v": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]})
-    found = nh.sweep(lambda block: {"value": block["v"].sum(axis=1)}, design, tmp_path / "s.zarr")
-    assert nh.plot.sweep_map(found, "value").drawn.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]
+    result = nh.sweep(lambda block: {"value": block["v"].sum(axis=1)}, design, tmp_path / "s.zarr")
+    assert nh.plot.sweep_map(result, "value").drawn.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]

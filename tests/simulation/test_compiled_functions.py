@@ -75,17 +75,17 @@ def _compiled(function: Any) -> Any:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> None:
     """A compiled function has the bits of the same one in Python, whose definition is in test_energy_scheme."""
-    system, found = SYSTEMS[name], []
+    system, result = SYSTEMS[name], []
     g = system.group.random(np.random.default_rng(5))
     start: dict[str, Any] = {"restricted_velocity": START[: system.rank], "configuration": g}
     for functions in (lambda f: f, _compiled):
         forced = nh.Forced(system, *map(functions, KINDS[kind](system)))
         discrete = nh.discretize(forced, 0.05)
-        found.append(nh.simulate(discrete, **start, steps=12))
+        result.append(nh.simulate(discrete, **start, steps=12))
         thin = nh.simulate(discrete, **start, steps=11, save_every=3)
-        assert_same(found[-1][:12:3], thin)
+        assert_same(result[-1][:12:3], thin)
     assert discrete.route.compiled_route is not None
-    assert_same(*found)
+    assert_same(*result)
 
 
 def test_events_are_found_under_a_compiled_potential() -> None:
@@ -93,9 +93,9 @@ def test_events_are_found_under_a_compiled_potential() -> None:
     event = nh.Event(lambda states: states.configuration[:, 0, 0] - 0.95)
     run: dict[str, Any] = {"restricted_velocity": START[:2], "steps": 60, "events": [event]}
     for forced in (nh.Forced(TOP, WELL), nh.Forced(TOP, WELL, PUSH)):
-        found = nh.simulate(nh.discretize(forced, 0.05), **run).events[0]
-        assert len(found) > 0
-        assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
+        result = nh.simulate(nh.discretize(forced, 0.05), **run).events[0]
+        assert len(result) > 0
+        assert np.abs(result.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
 
 
 @numba.njit
@@ -169,18 +169,18 @@ def test_half_impulses_that_exist_are_found(way: str) -> None:
     system: AbstractSystem = nh.ChaplyginSleigh(1.0, 1.0, 0.0)
     if "space" in way:
         system = nh.LRSystem(nh.SE(2), system.homogeneous_mass_tensor, np.eye(3)[:2])
-    force, h, known = numba.njit(_drag) if "numba" in way else _drag, 0.8, [8.0]
+    force, h, reference = numba.njit(_drag) if "numba" in way else _drag, 0.8, [8.0]
     a = 0.5 * h / 2 / 4
     for _ in range(2):
-        u = known[-1]
+        u = reference[-1]
         for _ in range(2):
             b = 1 + 2 * a * u
             u = (math.sqrt(b * b - 4 * a * (a * u * u - u)) - b) / (2 * a)
-        known.append(u)
+        reference.append(u)
     kicked = nh.discretize(nh.Forced(system, force=force, scheme="variational"), h)
     orbit = nh.simulate(kicked, body_velocity=(0.0, 8.0, 0.0), steps=2)
-    assert np.abs(orbit.body_velocity[:, 1] - known).max() < 1e-12
-    assert np.allclose(known, [8.0, 1.6396, 0.9837], atol=1e-4)
+    assert np.abs(orbit.body_velocity[:, 1] - reference).max() < 1e-12
+    assert np.allclose(reference, [8.0, 1.6396, 0.9837], atol=1e-4)
 
 
 @pytest.mark.parametrize("strength", [1.0, 1.05])

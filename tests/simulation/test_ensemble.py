@@ -38,14 +38,14 @@ def _parameters(system: Any, count: int) -> dict[str, np.ndarray]:
     return {**drawn, "a": rng.normal(size=count), "b": rng.normal(size=count), "time_step": step}
 
 
-def _assert_same_bits(found: nh.Ensemble, wanted: nh.Ensemble, part: slice = slice(None)) -> None:
+def _assert_same_bits(result: nh.Ensemble, wanted: nh.Ensemble, part: slice = slice(None)) -> None:
     for name in ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done"):
-        assert np.array_equal(getattr(found, name), getattr(wanted, name)[part], equal_nan=True), name
+        assert np.array_equal(getattr(result, name), getattr(wanted, name)[part], equal_nan=True), name
 
 
-def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> None:
-    assert found.shape == wanted.shape
-    assert np.abs(found - wanted).max() <= tolerance * np.abs(wanted).max()
+def _assert_close(result: np.ndarray, wanted: np.ndarray, tolerance: float) -> None:
+    assert result.shape == wanted.shape
+    assert np.abs(result - wanted).max() <= tolerance * np.abs(wanted).max()
 
 
 @BOTH
@@ -136,8 +136,8 @@ def test_bodies_by_matrices_run_side_by_side(name: str) -> None:
         each = run | {"restricted_velocity": run["restricted_velocity"][member]}
         orbit = nh.simulate(batch.members.of(member), **each, steps=40, save_every=8, throw=False)
         for quantity in ("reduced_momentum", "cayley", "canonical_pose", *DECODED):
-            found = getattr(batch, quantity)[member, : len(orbit)]
-            assert np.array_equal(found, getattr(orbit, quantity)), quantity
+            result = getattr(batch, quantity)[member, : len(orbit)]
+            assert np.array_equal(result, getattr(orbit, quantity)), quantity
         assert batch.outcome[member] == orbit.outcome
 
 
@@ -176,16 +176,16 @@ def test_members_start_where_they_are_put(name: str, start: str) -> None:
         nh.simulate(discrete, restricted_velocity=v, configuration=g, steps=1) for v, g in zip(w, poses, strict=True)
     ]
     rows = w if start == "restricted_velocity" else np.array([getattr(orbit, start)[0] for orbit in moved])
-    given, run = start.replace("restricted_momentum", "momentum"), {"steps": 20, "save_every": 5}
-    batch = nh.ensemble(discrete, **{given: rows}, configuration=poses, **run)
+    options, run = start.replace("restricted_momentum", "momentum"), {"steps": 20, "save_every": 5}
+    batch = nh.ensemble(discrete, **{options: rows}, configuration=poses, **run)
     assert batch.outcome.tolist() == [0, 0, 0]
     for member in range(3):
-        orbit = nh.simulate(discrete, **{given: rows[member]}, configuration=poses[member], **run)
+        orbit = nh.simulate(discrete, **{options: rows[member]}, configuration=poses[member], **run)
         for quantity in ("reduced_momentum", "cayley", "canonical_pose", *DECODED):
             error = 1e-14 if start == "body_velocity" else 0.0  # which a product of matrices restricts
             _assert_close(getattr(batch, quantity)[member], getattr(orbit, quantity), error)
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
-    shared = nh.ensemble(discrete, **{given: rows[0]}, configuration=poses[:1], **run)
+    shared = nh.ensemble(discrete, **{options: rows[0]}, configuration=poses[:1], **run)
     assert np.array_equal(shared.configuration[0], batch.configuration[0])
 
 
@@ -241,13 +241,13 @@ def test_jax_agrees_with_the_compiled_loop(system: Any) -> None:
     arguments["parameters"] = parameters | {"time_step": np.linspace(0.05, 0.9, 40)}
     discrete = nh.discretize(system, 0.1)
     wanted = nh.ensemble(discrete, **arguments)
-    found = nh.ensemble(discrete, **arguments, backend="jax")
+    result = nh.ensemble(discrete, **arguments, backend="jax")
     assert set(wanted.outcome) > {0}
-    assert_same(found, wanted, "outcome", "steps_done")
+    assert_same(result, wanted, "outcome", "steps_done")
     for name in ("reduced_momentum", "cayley", "canonical_pose"):
         good = ~np.isnan(getattr(wanted, name))
-        assert np.array_equal(good, ~np.isnan(getattr(found, name)))
-        _assert_close(getattr(found, name)[good], getattr(wanted, name)[good], 1e-12)
+        assert np.array_equal(good, ~np.isnan(getattr(result, name)))
+        _assert_close(getattr(result, name)[good], getattr(wanted, name)[good], 1e-12)
 
 
 def test_a_reduction_sees_the_members_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -263,10 +263,10 @@ def test_a_reduction_sees_the_members_in_blocks(monkeypatch: pytest.MonkeyPatch)
     arguments = {"restricted_velocity": velocities, "parameters": parameters, "steps": 60, "save_every": 20}
     wanted = reduction(nh.ensemble(discrete, **arguments))
     monkeypatch.setattr(_ensemble, "_BLOCK", 700)
-    found = nh.ensemble(discrete, **arguments, reduce=reduction)
+    result = nh.ensemble(discrete, **arguments, reduce=reduction)
     assert sizes[1:] == [21, 21, 8]
     for name, values in wanted.items():
-        assert np.array_equal(found[name], values)
+        assert np.array_equal(result[name], values)
 
 
 def test_headings_are_unwrapped_along_each_member() -> None:
@@ -283,12 +283,12 @@ def test_a_dataset_has_members_steps_and_parameters() -> None:
     """The labeled dataset has the dimensions member and step, outcomes and the parameters that vary."""
     run: dict[str, Any] = {"restricted_velocity": (0.4, 0.9), "steps": 6, "save_every": 3}
     tensors = {"mass_tensor": J * np.array([1.0, 1.1])[:, None, None]}
-    found = nh.ensemble(nh.discretize(TOP, 0.1), **run, parameters=tensors).to_dataset()
+    result = nh.ensemble(nh.discretize(TOP, 0.1), **run, parameters=tensors).to_dataset()
     sizes = {"member": 2, "step": 3, "component": 2, "quaternion_component": 4, "row": 3, "column": 3}
-    assert dict(found.sizes) == sizes
-    assert found.mass_tensor.dims == ("member", "row", "column")
-    assert found.outcome.values.tolist() == [0, 0]
-    assert found.attrs["format"] == "nonholo.ensemble"
+    assert dict(result.sizes) == sizes
+    assert result.mass_tensor.dims == ("member", "row", "column")
+    assert result.outcome.values.tolist() == [0, 0]
+    assert result.attrs["format"] == "nonholo.ensemble"
 
 
 def test_without_poses_what_needs_them_is_refused() -> None:
@@ -383,8 +383,8 @@ def test_rows_are_turned_as_the_group_multiplies(kind: str) -> None:
     one, other = (group.pose_from_matrix(group.exp(rng.normal(size=(200, 3)) * scale)) for scale in (3.0, 1e-9))
     back = group.pose_from_matrix(group.inverse(group.matrix_from_pose(one)))
     for poses, turns in ((one, other), (other, one), (one, one[::-1]), (one, back), (-one, one), (one * np.nan, one)):
-        found = [product(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
-        assert np.array_equal(found, group.pose_product(poses, turns), equal_nan=True)
+        result = [product(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
+        assert np.array_equal(result, group.pose_product(poses, turns), equal_nan=True)
 
 
 def test_tables_of_members_and_branches() -> None:
@@ -395,5 +395,5 @@ def test_tables_of_members_and_branches() -> None:
     assert list(table.index.names) == ["member", "time"]
     assert sorted(set(table.index.get_level_values(0))) == [0, 2]
     assert table.loc[2].equals(batch.orbit(2).to_pandas())
-    found = nh.branches(sleigh, momentum=(1.0, 0.5))
-    assert np.array_equal(found.to_pandas().filter(like="momentum"), found.momentum)
+    result = nh.branches(sleigh, momentum=(1.0, 0.5))
+    assert np.array_equal(result.to_pandas().filter(like="momentum"), result.momentum)

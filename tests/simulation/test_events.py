@@ -65,15 +65,15 @@ def test_crossing_of_the_uniform_circle_is_the_known_one() -> None:
         h = mpmath.mpf(float(ROUND.time_step))
         turn = mpmath.asin(4 * h)
         whole = [mpmath.floor(2 * mpmath.pi * n / turn) for n in (1, 2, 3)]
-        known = [
+        reference = [
             float(k * h + mpmath.sin(2 * mpmath.pi * n - k * turn) / 4) for n, k in zip((1, 2, 3), whole, strict=True)
         ]
-    found = orbit.events["east"]
-    assert np.array_equal(found.step[:3], np.array(whole, dtype=int))
-    assert np.abs(found.time[:3] - known).max() < 4e-15  # ulps of 4.6, and of a heading of 19 over w
-    assert np.abs(found.states.heading[:3] - 2 * np.pi * np.arange(1, 4)).max() < 4e-15
-    assert np.abs(found.states.heading - 2 * np.pi * np.arange(1, 40)).max() < 2e-13  # ulps of 250, all stretches
-    assert np.array_equal(found.step, np.floor(found.time / ROUND.time_step))
+    result = orbit.events["east"]
+    assert np.array_equal(result.step[:3], np.array(whole, dtype=int))
+    assert np.abs(result.time[:3] - reference).max() < 4e-15  # ulps of 4.6, and of a heading of 19 over w
+    assert np.abs(result.states.heading[:3] - 2 * np.pi * np.arange(1, 4)).max() < 4e-15
+    assert np.abs(result.states.heading - 2 * np.pi * np.arange(1, 40)).max() < 2e-13  # ulps of 250, all stretches
+    assert np.array_equal(result.step, np.floor(result.time / ROUND.time_step))
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -137,20 +137,20 @@ def test_the_first_of_two_stops_in_one_step_counts() -> None:
         nh.Event(lambda orbit, at=at: orbit.heading - (20 + at / 10) * turn, stop=stop, name=f"at_{at}")
         for at, stop in ((9, True), (2, False), (7, True), (5, False), (8, False))
     ]
-    found, batch = circle(100, events=events).events, nh.ensemble(ROUND, **CIRCLE_OF_ONE, steps=100, events=events)
-    assert [len(crossings) for crossings in found.found] == [0, 1, 1, 1, 0]
+    result, batch = circle(100, events=events).events, nh.ensemble(ROUND, **CIRCLE_OF_ONE, steps=100, events=events)
+    assert [len(crossings) for crossings in result.found] == [0, 1, 1, 1, 0]
     assert [int(crossings.count[0]) for crossings in batch.events.found] == [0, 1, 1, 1, 0]
-    assert found.stopped_by == "at_7"
+    assert result.stopped_by == "at_7"
     assert (batch.events.stopped_by.tolist(), batch.steps_done.tolist()) == ([2], [20])
-    assert found["at_2"].time < found["at_5"].time < found["at_7"].time
+    assert result["at_2"].time < result["at_5"].time < result["at_7"].time
 
 
 def test_zero_at_a_state_counts_once() -> None:
     """A function that is exactly zero at a saved state has one crossing, that state, also if it only touches zero."""
     plain = circle()
     through, touch = (nh.Event(lambda orbit, n=n: (orbit.time - plain.time[9]) ** n, name=f"power_{n}") for n in (1, 2))
-    found = circle(events=[through, touch]).events
-    for crossings in found.found:
+    result = circle(events=[through, touch]).events
+    for crossings in result.found:
         assert (crossings.step.tolist(), crossings.fraction.tolist()) == ([9], [0.0])
         assert np.array_equal(crossings.states.pose, plain.pose[9:10])
 
@@ -182,15 +182,15 @@ def test_staying_at_zero_is_no_crossing() -> None:
     """An equilibrium, where v_1 and omega are constant, and a run that starts at zero, have no crossings."""
     run = {"body_velocity": (0.0, 1.0, 0.0), "steps": 50}
     events = [lambda orbit: orbit.body_velocity[:, 0], lambda orbit: orbit.time]
-    assert [len(found) for found in nh.simulate(SLEIGH, **run, events=events).events.found] == [0, 0]
+    assert [len(result) for result in nh.simulate(SLEIGH, **run, events=events).events.found] == [0, 0]
 
 
 def test_headings_of_events_know_full_turns() -> None:
     """Blocks of a long run, and states in a step, continue the heading: it crosses 3000 turns once."""
     far = nh.Event(lambda orbit: orbit.heading - 6000 * np.pi, name="far")
-    found = circle(50_000, save_every=10_000, events=[far]).events["far"]
-    assert len(found) == 1
-    assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
+    result = circle(50_000, save_every=10_000, events=[far]).events["far"]
+    assert len(result) == 1
+    assert abs(result.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
 
 
 @pytest.mark.parametrize(("block_steps", "stop"), [(20, 9), (5, 9), (5, False)])
@@ -266,19 +266,19 @@ def test_wide_tops_need_no_poses() -> None:
     run = {"restricted_velocity": np.random.default_rng(0).normal(size=299) * 0.05, "steps": 50}
     middle = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False).restricted_momentum[[0, -1], 0].mean()
     event = nh.Event(lambda orbit: orbit.restricted_momentum[:, 0] - middle)
-    found = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False, events=[event]).events[0]
-    assert len(found) == 1
-    assert abs(event.function(found.states)[0]) < 1e-16
+    result = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False, events=[event]).events[0]
+    assert len(result) == 1
+    assert abs(event.function(result.states)[0]) < 1e-16
 
 
 @pytest.mark.parametrize("method", ["closed_form", None])
 def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) -> None:
     """A backward sleigh turns round once, at the time where tanh is zero; numerically as exact as the tolerances."""
-    found = nh.flow(OFFSET, **FLOW, method=method, rtol=1e-13, atol=1e-14, events=[nh.cusp]).events["cusp"]
-    assert len(found) == 1
-    assert found.step.tolist() == [int(np.searchsorted(TIMES, CUSP)) - 1]
-    assert abs(found.time[0] - CUSP) < 4e-15 if method else abs(found.time[0] - CUSP) < 1e-12
-    assert abs(found.states.body_velocity[0, 1]) < 1e-15
+    result = nh.flow(OFFSET, **FLOW, method=method, rtol=1e-13, atol=1e-14, events=[nh.cusp]).events["cusp"]
+    assert len(result) == 1
+    assert result.step.tolist() == [int(np.searchsorted(TIMES, CUSP)) - 1]
+    assert abs(result.time[0] - CUSP) < 4e-15 if method else abs(result.time[0] - CUSP) < 1e-12
+    assert abs(result.states.body_velocity[0, 1]) < 1e-15
 
 
 def test_events_leave_the_flow_alone() -> None:
@@ -296,18 +296,18 @@ def test_full_turns_between_two_times_are_known(method: str | None) -> None:
     """A heading of three turns is crossed within one interval of four turns, where the closed form has it."""
     spin = nh.ChaplyginSleigh(1.0, 0.75, 0.0)
     flow = {"body_velocity": (1.0, 0.5, 0.0), "times": (0.0, 4.0, 4.0 + 8 * np.pi), "method": method, "rtol": 1e-13}
-    found = nh.flow(spin, **flow, events=[lambda orbit: orbit.heading - 6 * np.pi]).events[0]
-    assert found.step.tolist() == [1]
-    assert abs(found.time[0] - 6 * np.pi) < 1e-11  # some 100 solver steps of relative error 1e-13
+    result = nh.flow(spin, **flow, events=[lambda orbit: orbit.heading - 6 * np.pi]).events[0]
+    assert result.step.tolist() == [1]
+    assert abs(result.time[0] - 6 * np.pi) < 1e-11  # some 100 solver steps of relative error 1e-13
 
 
 def test_backward_flow() -> None:
     """Run backwards from after the cusp the flow finds it again, in the other direction."""
     after = nh.flow(OFFSET, **FLOW, method="closed_form")
     back: dict[str, Any] = {"body_velocity": after.body_velocity[-1], "times": TIMES[::-1], "method": "closed_form"}
-    found = nh.flow(OFFSET, **back, events=[nh.cusp]).events["cusp"]
-    assert found.direction.tolist() == [-1]
-    assert abs(found.time[0] - CUSP) < 1e-14 * 10 * np.exp(5)  # errors of the state grow backwards as e^(aEt)
+    result = nh.flow(OFFSET, **back, events=[nh.cusp]).events["cusp"]
+    assert result.direction.tolist() == [-1]
+    assert abs(result.time[0] - CUSP) < 1e-14 * 10 * np.exp(5)  # errors of the state grow backwards as e^(aEt)
 
 
 def test_a_flow_that_stops_in_time_does_not_fail() -> None:
@@ -326,10 +326,10 @@ def test_events_between_requested_times_are_seen() -> None:
     top = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), axis=(0, 0, 1))
     for times in ((0.0, 100.0), np.linspace(0.0, 100.0, 300)):
         orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=times, events=[lambda orbit: np.sin(orbit.time)])
-        found = orbit.events[0]
-        assert np.abs(found.time - np.pi * np.arange(1, 32)).max() <= 1e-13
-        begin, gap = orbit.time[found.step], orbit.time[found.step + 1] - orbit.time[found.step]
-        assert np.abs(begin + found.fraction * gap - found.time).max() <= 1e-13
+        result = orbit.events[0]
+        assert np.abs(result.time - np.pi * np.arange(1, 32)).max() <= 1e-13
+        begin, gap = orbit.time[result.step], orbit.time[result.step + 1] - orbit.time[result.step]
+        assert np.abs(begin + result.fraction * gap - result.time).max() <= 1e-13
     fifth = nh.Event(lambda orbit: np.sin(orbit.time), stop=5)
     orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=(0.0, 1.0, 15.0, 16.0, 17.0), events=[fifth])
     assert orbit.time.tolist() == [0.0, 1.0, 15.0]
@@ -351,20 +351,20 @@ def test_members_have_the_crossings_of_their_own_runs(name: str, every: int | No
     """Number, first and last crossing, kept states and the end of each member are those of its own run, to rounding."""
     discrete, events, parameters = CASES[name]
     batch = nh.ensemble(discrete, **ROWS, steps=120, save_every=every, parameters=parameters or None, events=events)
-    assert sum(int(found.count.sum()) for found in batch.events.found) > 5
+    assert sum(int(result.count.sum()) for result in batch.events.found) > 5
     for member in range(len(batch)):
         start = {"restricted_velocity": ROWS["restricted_velocity"][member], "save_every": every or 1}
         orbit = nh.simulate(batch.members.of(member), **start, steps=120, throw=False, events=events)
-        for event, found in zip(batch.events.found, orbit.events.found, strict=True):
-            assert event.count[member] == len(found)
+        for event, result in zip(batch.events.found, orbit.events.found, strict=True):
+            assert event.count[member] == len(result)
             for states, which in ((event.first, 0), (event.last, -1)):
-                if len(found):
-                    assert abs(states.time[member, 0] - found.time[which]) < 1e-12
-                    assert np.abs(states.pose[member, 0] - found.states.pose[which]).max() < 1e-12
+                if len(result):
+                    assert abs(states.time[member, 0] - result.time[which]) < 1e-12
+                    assert np.abs(states.pose[member, 0] - result.states.pose[which]).max() < 1e-12
                 else:
                     assert np.isnan(states.time[member]).all()
-        kept = batch.orbit(member)
-        assert np.abs(kept.pose - (orbit.pose[-1:] if every is None else orbit.pose)).max() < 1e-12  # of some 10
+        own = batch.orbit(member)
+        assert np.abs(own.pose - (orbit.pose[-1:] if every is None else orbit.pose)).max() < 1e-12  # of some 10
         name_of = orbit.events.stopped_by
         assert batch.events.stopped_by[member] == (-1 if name_of is None else [e.name for e in events].index(name_of))
 

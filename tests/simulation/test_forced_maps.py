@@ -93,8 +93,8 @@ def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
         momentum = orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]
         pose = orbit.configuration[-1] - flow.configuration[-1]
         missed.append([float(np.abs(x).max()) for x in (momentum, pose, balance)])
-        kept = nh.invariants(orbit)
-        assert max(kept.constraint_residual, kept.group_residual or 0.0) < 1e-13
+        invariants = nh.invariants(orbit)
+        assert max(invariants.constraint_residual, invariants.group_residual or 0.0) < 1e-13
     for errors in np.transpose(missed)[: 3 if kind != "friction" else 2]:
         assert errors[-1] < 1e-13 or abs(_slope(list(errors)) - 2) < 0.1, errors
 
@@ -102,14 +102,16 @@ def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
 def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
     """Forced with neither argument is the free system, and so is one with a table of zeros, to the last bit."""
     for system in (TOP, SLEIGH, VESELOVA):
-        given = [system, nh.Forced(system)]
+        arguments = [system, nh.Forced(system)]
         if system is not VESELOVA:
-            given.append(nh.Forced(system, force=np.zeros((50, 3)), scheme="variational"))
-        free, plain, *resting = (nh.simulate(nh.discretize(each, 0.1), **start_of(system), steps=50) for each in given)
+            arguments.append(nh.Forced(system, force=np.zeros((50, 3)), scheme="variational"))
+        free, plain, *resting = (
+            nh.simulate(nh.discretize(each, 0.1), **start_of(system), steps=50) for each in arguments
+        )
         assert_same(free, plain, "momentum", "configuration", "multipliers")
         for same in resting:
             assert_same(free, same, "restricted_momentum", "pose", "chart")
-        flows = [nh.flow(each, **start_of(system), times=(0.0, 1.0)) for each in given[:2]]
+        flows = [nh.flow(each, **start_of(system), times=(0.0, 1.0)) for each in arguments[:2]]
         assert np.array_equal(flows[0].momentum, flows[1].momentum)
 
 
@@ -137,7 +139,7 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
 @pytest.mark.parametrize("bodies", [10, 100], ids=["1000 cases", "10,000"])
 def test_friction_never_adds_energy(bodies: int) -> None:
     """The kinetic energy falls in every step, for random bodies, friction, step sizes and a hundred starts of each."""
-    rng, seen = np.random.default_rng(8), 0
+    rng, count = np.random.default_rng(8), 0
     for case in range(bodies):
         root = rng.normal(size=(3, 3))
         top, sleigh = nh.SuslovTop(root @ root.T + 0.1 * np.eye(3)), (*rng.uniform(0.2, 3, 2), *rng.normal(size=2))
@@ -147,9 +149,9 @@ def test_friction_never_adds_energy(bodies: int) -> None:
         discrete = nh.discretize(forced, 10 ** rng.uniform(-3, 3))
         slow = 10 ** rng.uniform(-3, -0.5, (100, 1)) / discrete.time_step * rng.normal(size=(100, 2))
         energy = nh.ensemble(discrete, restricted_velocity=slow, steps=4, save_every=1).energy
-        seen += np.isfinite(energy[:, 1]).sum()
+        count += np.isfinite(energy[:, 1]).sum()
         assert np.all(np.diff(np.nan_to_num(energy), axis=1) <= 1e-14 * energy[:, :1])
-    assert seen > 90 * bodies
+    assert count > 90 * bodies
 
 
 def test_friction_of_a_balanced_body_is_exact() -> None:
@@ -212,9 +214,9 @@ def test_a_flow_knows_its_time() -> None:
     flow = nh.flow(forced, **start_of(TOP), times=(0.0, 0.7, 1.1))
     start = {"momentum": flow.restricted_momentum[1], "configuration": flow.configuration[1]}
     for time, state in ((1.1, 2), (0.0, 0)):
-        found = nh.flow(forced, **start, times=(0.7, time))
-        assert np.abs(found.momentum[1] - flow.momentum[state]).max() < 1e-11
-        assert np.abs(found.at(0.7).configuration[0] - flow.configuration[1]).max() < 1e-11
+        result = nh.flow(forced, **start, times=(0.7, time))
+        assert np.abs(result.momentum[1] - flow.momentum[state]).max() < 1e-11
+        assert np.abs(result.at(0.7).configuration[0] - flow.configuration[1]).max() < 1e-11
 
 
 def test_the_energy_error_stays_bounded_or_grows_at_a_rate_of_order_two() -> None:
@@ -282,8 +284,8 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
         nh.resume(tmp_path / "sweep.zarr")
     pushed = nh.discretize(nh.Forced(SLEIGH, force=np.ones((3, 3))), 0.05)
     nh.save_orbit(nh.simulate(pushed, **START, steps=3), tmp_path / "table.zarr")
-    told = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
-    assert told["system"] == {"kind": "ChaplyginSleigh", "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3}}
+    report = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
+    assert report["system"] == {"kind": "ChaplyginSleigh", "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3}}
 
 
 _FORCED = nh.Forced(TOP, HEAVY, RUB)

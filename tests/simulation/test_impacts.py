@@ -103,10 +103,10 @@ def test_normals_of_all_kinds_are_one(name: str) -> None:
     for states in nh.simulate(nh.discretize(system, 0.3), steps=5, **start), nh.flow(system, times=(0, 1), **start):
         for k in range(len(states)):
             state = states.chosen(slice(k, k + 1))
-            known = nh.Impact(normal, point=point).covector(gap, state)
-            assert np.abs(known - covector(state.configuration[0])).max() < 1e-14
-            assert np.abs(known - nh.Impact(covector).covector(gap, state)).max() < 1e-14
-            assert np.abs(known - nh.Impact().covector(gap, state)).max() < 2e-11
+            reference = nh.Impact(normal, point=point).covector(gap, state)
+            assert np.abs(reference - covector(state.configuration[0])).max() < 1e-14
+            assert np.abs(reference - nh.Impact(covector).covector(gap, state)).max() < 1e-14
+            assert np.abs(reference - nh.Impact().covector(gap, state)).max() < 2e-11
 
 
 @pytest.mark.parametrize("size", 2.0 ** np.array([-40, -20, 0, 20, 40]))
@@ -140,11 +140,11 @@ def test_normals_of_curved_walls_are_exact_in_every_unit_of_length(size: float) 
 
 def test_impacts_are_values() -> None:
     """An impact with another restitution has the same normal, whatever kind that is."""
-    for given in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
-        other = dataclasses.replace(given, restitution=0.5)
+    for arguments in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
+        other = dataclasses.replace(arguments, restitution=0.5)
         assert other.restitution == 0.5
-        assert np.array_equal(other.normal, given.normal)
-        assert np.array_equal(other.point, given.point)
+        assert np.array_equal(other.normal, arguments.normal)
+        assert np.array_equal(other.point, arguments.point)
 
 
 @pytest.mark.profile("routes", keep=["2-sleigh in a square", "2-top"])
@@ -171,16 +171,19 @@ def test_impacts_are_roots_of_the_parts_of_steps(name: str) -> None:
     steps = np.concatenate([orbit.events[event].step for event in orbit.events])
     count = 0
     for wall in walls:
-        for k, found in enumerate(orbit.events[wall.name].step):
-            hit, node = orbit.events[wall.name].chosen(slice(k, k + 1)), orbit.chosen(slice(found, found + 1))
-            if (steps == found).sum() > 1:
+        for k, result in enumerate(orbit.events[wall.name].step):
+            hit, node = orbit.events[wall.name].chosen(slice(k, k + 1)), orbit.chosen(slice(result, result + 1))
+            if (steps == result).sum() > 1:
                 continue
             count += 1
             gap = lambda s: wall.function(discrete.after_parts(node, np.array([s])))[0]  # noqa: B023, E731
             assert abs(brentq(gap, 1e-9, 1.0, xtol=1e-16) - hit.fraction[0]) < 1e-13
             assert abs(wall.function(hit.states)[0]) < 1e-15
             assert abs(wall.function(hit.after)[0]) < 1e-15
-            ahead, after = discrete.after_parts(hit.after, 1 - hit.fraction), orbit.chosen(slice(found + 1, found + 2))
+            ahead, after = (
+                discrete.after_parts(hit.after, 1 - hit.fraction),
+                orbit.chosen(slice(result + 1, result + 2)),
+            )
             assert_near(ahead, after, 1e-15, "reduced_momentum", "configuration")
     assert count > 5
 
@@ -250,10 +253,10 @@ def test_forced_flows_and_maps_bounce() -> None:
     orbit = nh.simulate(nh.discretize(FALLING, 0.1), steps=200, **start)
     flow = nh.flow(FALLING, times=np.linspace(0, 20, 21), **start)
     moments = np.sqrt(2) * np.arange(1, 15, 2)
-    for found in orbit, flow:
-        assert np.abs(found.events["floor"].time - moments).max() < 1e-11
-        assert np.ptp(found.energy) < 1e-11
-        assert np.abs(found.position[:, 0] - 0.1 * found.time).max() < 1e-11
+    for result in orbit, flow:
+        assert np.abs(result.events["floor"].time - moments).max() < 1e-11
+        assert np.ptp(result.energy) < 1e-11
+        assert np.abs(result.position[:, 0] - 0.1 * result.time).max() < 1e-11
 
 
 @pytest.mark.profile("problems", keep=["potential0"])
@@ -359,10 +362,10 @@ def test_a_plastic_impact_is_one(name: str, step: float) -> None:
         flow = nh.flow(system, times=np.linspace(0, 40 * step, 9), events=events, **start)
     except nh.OutcomeError as early:
         flow = early.orbit
-    for found in orbit, flow:
-        assert found.outcome == wanted
-        assert len(found.events["wall"]) == 1
-        assert gap(found).min() > -1e-13
+    for result in orbit, flow:
+        assert result.outcome == wanted
+        assert len(result.events["wall"]) == 1
+        assert gap(result).min() > -1e-13
 
 
 def test_motion_is_reversed() -> None:
@@ -433,10 +436,10 @@ def test_starts_at_a_wall(side: float) -> None:
         east = wall("east", (side, 0.0), direction=direction)
         orbit = nh.simulate(nh.discretize(SLEIGH, 0.05), steps=40, events=[east], **start)
         flow = nh.flow(SLEIGH, times=np.linspace(0, 2, 11), events=[east], **start)
-        for found in orbit, flow:
+        for result in orbit, flow:
             toward = speed * side > 0
-            assert len(found.events["east"]) == (toward and direction == -1)
-            assert (east.function(found).min() > -1e-14) == (not toward or direction == -1)
+            assert len(result.events["east"]) == (toward and direction == -1)
+            assert (east.function(result).min() > -1e-14) == (not toward or direction == -1)
 
 
 def test_one_way_walls() -> None:

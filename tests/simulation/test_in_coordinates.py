@@ -66,10 +66,10 @@ def test_thrown_stones_cross_where_parabolas_do(system: LagrangeDAlembert) -> No
 def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
     """Forwards and backwards, from few requested times; a stopping event ends them with the last one before it."""
     root = np.sqrt(1 - 0.6 * G)
-    found = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), rtol=1e-12, atol=1e-13, events=[height, rise])
-    assert np.abs(found.events["height"].time - [(1 - root) / G, (1 + root) / G]).max() <= 1e-12
-    assert np.abs(found.events["rise"].states.configuration - [[1 / (2 * G), 0.5 / G]]).max() <= 1e-12
-    assert (len(found), found.events["rise"].step.tolist()) == (5, [1])
+    result = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), rtol=1e-12, atol=1e-13, events=[height, rise])
+    assert np.abs(result.events["height"].time - [(1 - root) / G, (1 + root) / G]).max() <= 1e-12
+    assert np.abs(result.events["rise"].states.configuration - [[1 / (2 * G), 0.5 / G]]).max() <= 1e-12
+    assert (len(result), result.events["rise"].step.tolist()) == (5, [1])
     stopped = nh.flow(system, **THROWN, times=np.linspace(0.0, 3.0, 5), events=[nh.Event(rise, stop=True)])
     assert (stopped.time[-1], stopped.outcome) == (0.75, nh.Outcome.successful)
     back = nh.flow(system, **THROWN, times=[0.0, -0.7, -1.5], events=[lambda states: states.configuration[:, 0] + 1.0])
@@ -87,11 +87,11 @@ def test_members_are_runs_alone_however_they_end() -> None:
     assert batch.steps_done.tolist() == last.steps_done.tolist() == [max(len(run) - 1, 0) for run in runs]
     assert len({*batch.steps_done}) >= 3
     for member, run in enumerate(runs):
-        kept = run.configuration[::2]
-        assert np.array_equal(batch.configuration[member, : len(kept)], kept)
-        assert np.isnan(batch.configuration[member, len(kept) :]).all()
+        rows = run.configuration[::2]
+        assert np.array_equal(batch.configuration[member, : len(rows)], rows)
+        assert np.isnan(batch.configuration[member, len(rows) :]).all()
         assert np.array_equal(last.configuration[member][: len(run)], run.configuration[-1:])
-        assert len(batch.orbit(member)) == len(kept)
+        assert len(batch.orbit(member)) == len(rows)
     table = last.to_dataset()
     assert (dict(table.sizes)["member"], table.outcome.values.tolist()) == (4, batch.outcome.tolist())
     with pytest.raises(ValueError, match="Members count from 0"):

@@ -44,9 +44,9 @@ def assert_same(one: Any, other: Any, tolerance: float = 1e-13) -> None:
 
 def assert_controls_are(states: Any, velocities: np.ndarray, table: np.ndarray) -> None:
     """Compare the controls with those of a policy that sees configurations and velocities of the nodes."""
-    seen = zip(states.time, states.configuration, velocities, strict=True)
+    rows = zip(states.time, states.configuration, velocities, strict=True)
     with jax.enable_x64(True):
-        own = np.array([wavy(time, NodeState(q, v)) for time, q, v in seen])[:-1] + table[:STEPS]
+        own = np.array([wavy(time, NodeState(q, v)) for time, q, v in rows])[:-1] + table[:STEPS]
     np.testing.assert_allclose(states.controls[:-1], own, 0, 1e-12)
 
 
@@ -130,8 +130,8 @@ class Network(equinox.Module):
 
     def __call__(self, time: Any, state: Any) -> Any:
         """Return the control."""
-        seen = jnp.append(jnp.append(jnp.ravel(state.configuration[:2]), state.body_velocity), time)
-        return self.layers[1] @ jnp.tanh(self.layers[0] @ seen)
+        inputs = jnp.append(jnp.append(jnp.ravel(state.configuration[:2]), state.body_velocity), time)
+        return self.layers[1] @ jnp.tanh(self.layers[0] @ inputs)
 
 
 @pytest.mark.profile("routes", instead="test_a_policy_is_the_table_of_its_controls")
@@ -185,11 +185,11 @@ def test_forces_are_those_of_differences(discrete: Any) -> None:
         g, W = group.exp(rng.normal(size=group.dim)), group.exp(size * rng.normal(size=group.dim))
         rest, places = np.zeros(group.dim), ("potential_energy", "potential_force")
         with jax.enable_x64(True):
-            found = [traced.mean_force(jnp.asarray(g), jnp.asarray(W), 0.1, jnp.asarray(rest))]
-            found += [getattr(traced, name)(jnp.asarray(g)) for name in places]
+            result = [traced.mean_force(jnp.asarray(g), jnp.asarray(W), 0.1, jnp.asarray(rest))]
+            result += [getattr(traced, name)(jnp.asarray(g)) for name in places]
         wanted = [given.mean_force(g[None], W[None], 0.1, rest[None], time=np.zeros(1))[0]]
         wanted += [getattr(given, name)(g) for name in places]
-        for one, other in zip(found, wanted, strict=True):
+        for one, other in zip(result, wanted, strict=True):
             np.testing.assert_allclose(one, other, rtol=0, atol=1e-11)
 
 
@@ -208,10 +208,10 @@ def test_rollout_is_the_run_and_its_derivatives_are_differences(scheme: str) -> 
     with jax.enable_x64(True):
         forward, reverse = (slope(end, (0, 1))(0.8, 1.0) for slope in (jax.jacfwd, jax.jacrev))
     h = 1e-5
-    for i, found in enumerate(zip(forward, reverse, strict=True)):
+    for i, result in enumerate(zip(forward, reverse, strict=True)):
         high, low = (end(*(np.array([0.8, 1.0]) + to), nh.simulate) for to in (h * np.eye(2)[i], -h * np.eye(2)[i]))
         wanted = (high - low) / (2 * h)
-        np.testing.assert_allclose(found, [wanted, wanted], rtol=0, atol=1e-8)
+        np.testing.assert_allclose(result, [wanted, wanted], rtol=0, atol=1e-8)
 
 
 def _branching(g: Any) -> Any:

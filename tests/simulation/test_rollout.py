@@ -115,14 +115,14 @@ def test_values_are_those_of_simulate(system: AbstractSystem, options: dict, cap
     discrete = nh.discretize(system, 0.1, **options)
     pose = system.group.exp(np.linspace(0.1, 0.5, system.group.dim))
     start = {"restricted_velocity": np.linspace(0.4, 0.6, system.rank), "configuration": pose}
-    found = nh.rollout(discrete, **start, steps=50)
+    result = nh.rollout(discrete, **start, steps=50)
     with jax.log_compiles(), caplog.at_level("WARNING"):
         shorter = nh.rollout(discrete, **start, steps=30)
     assert "roll_out" not in caplog.text  # a program serves all up to 63 steps
-    assert all(map(np.array_equal, shorter[:-2], (x[:31] for x in found[:-2])))
-    assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in found[:-1])
-    assert found.outcome == 0
-    assert_near(found, nh.simulate(discrete, **start, steps=50), 1e-13, *FIELDS)
+    assert all(map(np.array_equal, shorter[:-2], (x[:31] for x in result[:-2])))
+    assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in result[:-1])
+    assert result.outcome == 0
+    assert_near(result, nh.simulate(discrete, **start, steps=50), 1e-13, *FIELDS)
 
 
 def _symmetrized(x: np.ndarray) -> np.ndarray:
@@ -158,9 +158,9 @@ def test_gradients_of_every_system_are_differences(system: AbstractSystem, optio
 
 def test_momentum_off_the_locus_is_an_outcome() -> None:
     """A full momentum that no displacement has gives NaN and says why."""
-    found = nh.rollout(nh.discretize(TOP, 0.1), momentum=(0.4, 0.9, 2.0), steps=5)
-    assert found.outcome == nh.Outcome.off_momentum_locus
-    assert np.isnan(found.momentum).all()
+    result = nh.rollout(nh.discretize(TOP, 0.1), momentum=(0.4, 0.9, 2.0), steps=5)
+    assert result.outcome == nh.Outcome.off_momentum_locus
+    assert np.isnan(result.momentum).all()
 
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.5, 0.7, 0.4, 0.2), 0.3)
@@ -181,13 +181,13 @@ def _kicked(controls: np.ndarray, velocity: tuple[float, float]) -> tuple[np.nda
 def test_controls_act_half_at_each_end_of_a_step() -> None:
     """Momenta of nodes and poses are those of single steps between half impulses; none acts after the last row."""
     controls = np.random.default_rng(0).normal(size=(6, 3))
-    found = nh.rollout(SLEIGH, restricted_velocity=(0.8, -0.5), controls=controls, steps=6)
+    result = nh.rollout(SLEIGH, restricted_velocity=(0.8, -0.5), controls=controls, steps=6)
     r, g = _kicked(controls, (0.8, -0.5))
-    np.testing.assert_allclose(found.restricted_momentum, r, rtol=0, atol=1e-14)
-    np.testing.assert_allclose(found.configuration, g, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(result.restricted_momentum, r, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(result.configuration, g, rtol=0, atol=1e-14)
     last = nh.simulate(SLEIGH, momentum=r[-1], steps=1)
-    np.testing.assert_allclose(found.displacement[-1], last.displacement[0], rtol=0, atol=1e-14)
-    np.testing.assert_allclose(found.momentum @ SLEIGH.system.constraint_subspace.T, r, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(result.displacement[-1], last.displacement[0], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(result.momentum @ SLEIGH.system.constraint_subspace.T, r, rtol=0, atol=1e-13)
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
@@ -201,10 +201,10 @@ def test_map_over_members_is_a_loop_and_compiled_is_not_compiled() -> None:
 
     with jax.enable_x64(True):
         mapped = jax.jit(jax.vmap(poses))(members)
-    for found, member in zip(mapped, members, strict=True):
-        np.testing.assert_allclose(found, poses(member), rtol=0, atol=1e-12)
+    for result, member in zip(mapped, members, strict=True):
+        np.testing.assert_allclose(result, poses(member), rtol=0, atol=1e-12)
         orbit = nh.simulate(SLEIGH, body_velocity=member, **sizes)
-        np.testing.assert_allclose(found, orbit.configuration, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(result, orbit.configuration, rtol=0, atol=1e-12)
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
@@ -242,13 +242,13 @@ def test_third_derivatives(forces: tuple) -> None:
 def test_a_spring_without_length_pulls_smoothly_at_its_end(scheme: str) -> None:
     """A sleigh that leaves the place where it is held swings by the linear map of the scheme, and so from rest."""
     spring, h, steps = nh.Spring([0.0, 0.0], [0.0, 0.0], 2.0), 0.1, 5
-    held = nh.discretize(nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.2), spring, scheme=scheme), h)
+    content = nh.discretize(nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.2), spring, scheme=scheme), h)
     rate = np.sqrt(2.0)
     angle = 2 * np.arctan(h * rate / 2) if scheme == "energy" else 2 * np.arcsin(h * rate / 2)
     expected = np.sin(steps * angle) * (1 / rate if scheme == "energy" else h / np.sin(angle))
 
     def end(speed: jax.Array) -> jax.Array:
-        orbit = nh.rollout(held, restricted_velocity=jnp.stack([0.0, speed]), steps=steps)
+        orbit = nh.rollout(content, restricted_velocity=jnp.stack([0.0, speed]), steps=steps)
         return orbit.configuration[-1, 0, 2] + orbit.energy[0] - speed**2 / 2
 
     with jax.enable_x64(True):
@@ -288,11 +288,11 @@ def test_fold_is_an_outcome_with_derivative_nan_and_states_before_keep_theirs() 
     assert int(run.outcome) == nh.Outcome.no_real_branch
     assert np.isfinite(run.momentum[:2]).all()
     assert np.isnan(run.momentum[2:]).all()
-    for found in map(np.asarray, (slopes, forward)):
-        assert found[0] == 0.0
-        assert found[1] != 0.0
-        assert np.isfinite(found[1])
-        assert np.isnan(found[2:]).all()
+    for result in map(np.asarray, (slopes, forward)):
+        assert result[0] == 0.0
+        assert result[1] != 0.0
+        assert np.isfinite(result[1])
+        assert np.isnan(result[2:]).all()
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
@@ -307,9 +307,9 @@ def test_near_half_a_turn_the_derivative_is_finite() -> None:
         return nh.rollout(fast, momentum=jnp.stack([spin, hat / 3 - 6 + 0 * spin]), steps=1).displacement[0, 0, 0]
 
     with jax.enable_x64(True):
-        value, found = jax.jit(jax.value_and_grad(cosine))(spin)
+        value, result = jax.jit(jax.value_and_grad(cosine))(spin)
     np.testing.assert_allclose(value, (1 - t * t) / (1 + t * t), rtol=1e-12)
-    np.testing.assert_allclose(found, -4 * t * slope / (1 + t * t) ** 2, rtol=1e-9)
+    np.testing.assert_allclose(result, -4 * t * slope / (1 + t * t) ** 2, rtol=1e-9)
 
 
 # An argument that does not fit is named before any work.

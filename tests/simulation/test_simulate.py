@@ -163,5 +163,5 @@ def test_numbers_and_truth_values_of_numpy_are_not_refused() -> None:
 
 def test_denormal_motion_is_measured() -> None:
     """A motion whose squared speed underflows still has defects, and no warning."""
-    found = nh.invariants(nh.simulate(SLEIGH, body_velocity=(1e-200, 1e-200, 0), steps=3))
-    assert found.reversal_defect <= 1e-12
+    result = nh.invariants(nh.simulate(SLEIGH, body_velocity=(1e-200, 1e-200, 0), steps=3))
+    assert result.reversal_defect <= 1e-12

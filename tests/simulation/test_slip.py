@@ -312,9 +312,9 @@ def test_multipliers_are_reactions_and_friction() -> None:
     slip, force = orbit.body_velocity[:-1, 2], orbit.multipliers[:, 0] / h
     sliding = (abs(slip[1:]) > 0.02) & (abs(slip[:-1]) > 0.02)
     np.testing.assert_allclose(force[:-1][sliding], -0.8 * np.sign(slip[1:][sliding]), atol=1e-12)
-    held = (slip[1:] == 0) & (slip[:-1] == 0)
-    assert held.any()
-    assert (abs(force[:-1][held]) < 0.8).all()
+    content = (slip[1:] == 0) & (slip[:-1] == 0)
+    assert content.any()
+    assert (abs(force[:-1][content]) < 0.8).all()
     S = orbit.system.constraint_subspace
     np.testing.assert_allclose(orbit.momentum @ S.T, orbit.restricted_momentum, atol=1e-14)
 

@@ -217,10 +217,10 @@ def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
 def test_events_under_forces_are_where_a_shorter_step_arrives(name: str) -> None:
     """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
     forced, whole = FORCED[name], _whole(name)
-    found = _run(forced, steps=100, events=[_level]).events[0]
-    assert len(found) > 0
-    assert np.abs(_level(found.states)).max() < 4e-15  # ulps of 3 t = 15
-    k, fraction = int(found.step[-1]), float(found.fraction[-1])
+    result = _run(forced, steps=100, events=[_level]).events[0]
+    assert len(result) > 0
+    assert np.abs(_level(result.states)).max() < 4e-15  # ulps of 3 t = 15
+    k, fraction = int(result.step[-1]), float(result.fraction[-1])
     parts = [] if forced.table is None else [np.asarray(forced.table)[k : k + 1]]
     parts += [] if forced.friction is None else [forced.friction]
     if forced.function is not None:
@@ -228,15 +228,15 @@ def test_events_under_forces_are_where_a_shorter_step_arrives(name: str) -> None
     moved = nh.Forced(forced.system, forced.potential, tuple(parts) if len(parts) > 1 else parts[0])
     start = {"momentum": whole.restricted_momentum[k], "configuration": whole.configuration[k]}
     there = nh.simulate(nh.discretize(moved, fraction * H), **start, steps=1)
-    assert_near(there[1:], found.states[-1:], 4e-15, "restricted_momentum", "configuration")
+    assert_near(there[1:], result.states[-1:], 4e-15, "restricted_momentum", "configuration")
 
 
 def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:
     """The numbers of steps of crossings are those of the run, whatever rows are searched and events it had."""
     watched = STEPPED["coordinates"](steps=100, events=[_level])
     for whole, event in ((_whole("table on a sleigh"), nh.cusp), (watched, _level)):
-        found, later = nh.crossings(whole, event), nh.crossings(whole[20:], event)
-        assert later.step.tolist() == found.step[found.step >= 20].tolist()
+        result, later = nh.crossings(whole, event), nh.crossings(whole[20:], event)
+        assert later.step.tolist() == result.step[result.step >= 20].tolist()
         assert np.array_equal(later.states.step, later.step)
         assert len(later)
 

@@ -39,8 +39,8 @@ FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
 
 
 def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
-    given = {"save_every": 2, "checkpoint_every": 40, **START, **options}
-    return nh.simulate(SLEIGH, steps=steps, store=path, **given)
+    arguments = {"save_every": 2, "checkpoint_every": 40, **START, **options}
+    return nh.simulate(SLEIGH, steps=steps, store=path, **arguments)
 
 
 def _whole(steps: int = 500) -> nh.Orbit:
@@ -70,9 +70,9 @@ def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
         nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, events=events, **FOLDS)
-    for found in (nh.load_orbit(path), nh.resume(path, events=events, throw=False)):
-        assert_same_run(found, whole)
-        assert found.events["level"].time.tolist() == whole.events["level"].time.tolist() != []
+    for result in (nh.load_orbit(path), nh.resume(path, events=events, throw=False)):
+        assert_same_run(result, whole)
+        assert result.events["level"].time.tolist() == whole.events["level"].time.tolist() != []
     with pytest.raises(ValueError, match="be a run that can continue"):
         nh.extend(path, 10, events=events)
 
@@ -176,20 +176,20 @@ def test_runs_without_poses(system: AbstractSystem, tmp_path: Path) -> None:
 
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While one process writes a store, another one is refused, and told who writes it."""
-    path, told = tmp_path / "run.zarr", []
+    path, report = tmp_path / "run.zarr", []
     write = Stream.write
 
     def meanwhile(self: Stream, number: int, *rest: Any) -> None:
         if number == 2:
             script = f"import nonholo as nh; nh.resume({str(path)!r})"
             other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)  # noqa: S603
-            told.append(other.stderr.splitlines()[-1])
+            report.append(other.stderr.splitlines()[-1])
         write(self, number, *rest)
 
     monkeypatch.setattr(Stream, "write", meanwhile)
     orbit = _begun(path)
-    assert told[0].startswith("BlockingIOError")
-    assert f"is being written by process {os.getpid()} on " in told[0]
+    assert report[0].startswith("BlockingIOError")
+    assert f"is being written by process {os.getpid()} on " in report[0]
     assert_same_run(orbit, _whole())
 
 
@@ -319,7 +319,7 @@ def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
     assert_same_run(nh.resume(path, events=events), whole)
     attributes = json.loads((path / "zarr.json").read_text())["attributes"]
     assert (attributes["stopped_by"], attributes["outcome"]) == ("east", "successful")
-    assert json.loads(attributes["crossings"]) == [len(found) for found in whole.events.found]
+    assert json.loads(attributes["crossings"]) == [len(result) for result in whole.events.found]
     with pytest.raises(ValueError, match=r"continue.*event 'east' ended"):
         nh.extend(path, 10, events=events)
 
@@ -362,11 +362,11 @@ def test_large_orbit_has_the_crossings_of_its_last_block(tmp_path: Path, monkeyp
     """Where only the last block of states is returned, its crossings are; the store holds all."""
     monkeypatch.setattr("nonholo.simulation._stored._LOADED", 100)
     tail, whole = turning(tmp_path / "run.zarr", [TURNS]), turning(None, [TURNS])
-    found, known = tail.events["east"], whole.events["east"]
+    result, reference = tail.events["east"], whole.events["east"]
     begin = tail.time[0] - 7 * ROUND.time_step
     assert len(tail) == len(whole) % 5
-    assert 0 < len(found) == np.count_nonzero(known.time > begin)
-    assert np.array_equal(found.time, known.time[-len(found) :])
+    assert 0 < len(result) == np.count_nonzero(reference.time > begin)
+    assert np.array_equal(result.time, reference.time[-len(result) :])
     assert_same_run(nh.load_orbit(tmp_path / "run.zarr"), whole)
 
 

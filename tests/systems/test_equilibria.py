@@ -18,15 +18,15 @@ def _drift(system: AbstractLLSystem, velocity: np.ndarray) -> np.ndarray:
     return system.restrict(system.group.coad(velocity, np.asarray(system.inertia_operator) @ velocity))
 
 
-def _spaces(known: Equilibria) -> list[Equilibria]:
-    return [known, *known.others]
+def _spaces(reference: Equilibria) -> list[Equilibria]:
+    return [reference, *reference.others]
 
 
-def _distance(velocity: np.ndarray, known: Equilibria) -> float:
+def _distance(velocity: np.ndarray, reference: Equilibria) -> float:
     """Return the distance of a velocity of length one from the equilibria."""
     return min(
         float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(space.subspace) @ space.subspace))
-        for space in _spaces(known)
+        for space in _spaces(reference)
     )
 
 
@@ -62,15 +62,15 @@ _GROUPS = {
 def test_every_zero_is_an_equilibrium(name: str, seed: int) -> None:
     """Newton's method from 100 random starts ends on the spaces, on whose every point the definition vanishes."""
     system = _any(*_GROUPS[name], seed)
-    S, known, scale = system.constraint_subspace, system.equilibria(), np.abs(system.inertia_operator).max()
-    for space in _spaces(known):
+    S, reference, scale = system.constraint_subspace, system.equilibria(), np.abs(system.inertia_operator).max()
+    for space in _spaces(reference):
         velocity = RNG.normal(size=len(space.subspace)) @ space.subspace
         velocity /= np.linalg.norm(velocity)
         assert np.abs(_drift(system, velocity)).max() < 1e-12 * scale
 
     zeros = _zeros_by_newton(system, RNG.normal(size=(100, len(S)))) @ S
     assert len(zeros) > 10
-    assert max(_distance(velocity, known) for velocity in zeros) < 1e-5  # a root of rounding, where rates are small
+    assert max(_distance(velocity, reference) for velocity in zeros) < 1e-5  # a root of rounding, where rates are small
 
 
 def _zeros_by_newton(system: AbstractLLSystem, x: np.ndarray) -> np.ndarray:
@@ -148,11 +148,11 @@ def test_rates_and_attraction(name: str, seed: int) -> None:
     for space in _spaces(system.equilibria()):
         lines = space.subspace if space.attracting is None else np.vstack([space.subspace, space.attracting])
         rates = [system.transverse_rates(velocity, space.subspace) for velocity in lines]
-        for velocity, found in zip(lines, rates, strict=True):
+        for velocity, result in zip(lines, rates, strict=True):
             x = velocity @ S.T
             columns = [(_drift(system, (x + d) @ S) - _drift(system, (x - d) @ S)) / 2 for d in np.eye(3)]
             expected = np.linalg.eigvals(np.linalg.solve(B, np.transpose(columns)))
-            gap = np.poly(expected) - np.poly(np.append(found, np.zeros(len(space.subspace))))
+            gap = np.poly(expected) - np.poly(np.append(result, np.zeros(len(space.subspace))))
             assert np.abs(gap / max(1.0, np.abs(expected).max()) ** np.arange(4)).max() < 1e-9
         if space.attracting is not None:
             assert rates[-1].real.max() < 0
@@ -220,11 +220,11 @@ def test_axes_of_a_free_body() -> None:
         assert np.allclose(np.abs(space.subspace @ turn / np.linalg.norm(space.subspace)), np.eye(3)[i], atol=1e-13)
     spectrum = nh.equilibria(body, energy=2.0)
     moments = np.array([6.0, 5.0, 3.0])
-    for found in (spectrum, *spectrum.others):
-        i = int(np.abs(found.subspace @ turn).argmax())
+    for result in (spectrum, *spectrum.others):
+        i = int(np.abs(result.subspace @ turn).argmax())
         one, two = (i + 1) % 3, (i + 2) % 3
         square = 4.0 / moments[i] * (moments[i] - moments[one]) * (moments[two] - moments[i])
-        assert np.allclose(found.rates**2, square / (moments[one] * moments[two]), rtol=1e-12)
+        assert np.allclose(result.rates**2, square / (moments[one] * moments[two]), rtol=1e-12)
     assert sorted(axes) == [0, 1, 2]
 
 
@@ -232,9 +232,9 @@ def test_axes_of_a_free_body() -> None:
 def test_symmetric_and_flat_bodies(moments: tuple[float, ...], sizes: list[int]) -> None:
     """A body of revolution turns steadily about its axis and any across it, a ball about all, a plate about three."""
     turn = nh.SO(3).exp(np.array([0.3, -0.7, 0.4]))
-    known = RigidBody(turn @ np.diag(moments) @ turn.T).equilibria()
-    assert sorted(len(space.subspace) for space in _spaces(known)) == sizes
-    assert all(space.attracting is None for space in _spaces(known))
+    reference = RigidBody(turn @ np.diag(moments) @ turn.T).equilibria()
+    assert sorted(len(space.subspace) for space in _spaces(reference)) == sizes
+    assert all(space.attracting is None for space in _spaces(reference))
 
 
 @pytest.mark.parametrize("length", [1e-9, 1.0, 1e9])
@@ -243,9 +243,9 @@ def test_equilibria_in_any_unit(length: float) -> None:
     units = np.array([1.0, length, length])
     inertia = _positive(3, 1) / np.outer(units, units)
     unit = LLSystem(nh.SE(2), constraint_subspace=np.eye(3), inertia_operator=_positive(3, 1)).equilibria()
-    known = LLSystem(nh.SE(2), constraint_subspace=np.eye(3), inertia_operator=inertia).equilibria()
-    assert len(known.others) == len(unit.others)
-    for space, expected in zip(_spaces(known), _spaces(unit), strict=True):
+    reference = LLSystem(nh.SE(2), constraint_subspace=np.eye(3), inertia_operator=inertia).equilibria()
+    assert len(reference.others) == len(unit.others)
+    for space, expected in zip(_spaces(reference), _spaces(unit), strict=True):
         assert np.allclose(space.subspace / units, expected.subspace, rtol=1e-9, atol=1e-12)
         assert (space.attracting is None) == (expected.attracting is None)
 
@@ -269,8 +269,8 @@ _STEADY = {
 @pytest.mark.parametrize("name", _STEADY)
 def test_bodies_of_which_all_velocities_stay(name: str) -> None:
     """All admissible velocities are equilibria, and none attracts."""
-    known, k = _STEADY[name].equilibria(), _STEADY[name].rank
-    assert (known.subspace.shape, known.attracting, known.others) == ((k, 6), None, ())
+    reference, k = _STEADY[name].equilibria(), _STEADY[name].rank
+    assert (reference.subspace.shape, reference.attracting, reference.others) == ((k, 6), None, ())
 
 
 def test_energies_of_either_sign() -> None:

@@ -92,9 +92,9 @@ def test_coordinate_rows_are_kept() -> None:
     """The complement of coordinate rows is made of coordinate rows, that of others is orthonormal and unique."""
     assert LLSystem(nh.SO(3), np.eye(3), [[0, 2.0, 0]]).annihilator.tolist() == [[1, 0, 0], [0, 0, 1]]
     rows = _random_rows(3, 6)
-    found, mixed = (LLSystem(nh.SO(4), np.eye(4), S).annihilator for S in (rows, _random_rows(3, 3) @ rows))
-    assert np.allclose(found @ found.T, np.eye(3), rtol=0, atol=1e-14)
-    assert np.allclose(found, mixed, rtol=0, atol=1e-13)
+    result, mixed = (LLSystem(nh.SO(4), np.eye(4), S).annihilator for S in (rows, _random_rows(3, 3) @ rows))
+    assert np.allclose(result @ result.T, np.eye(3), rtol=0, atol=1e-14)
+    assert np.allclose(result, mixed, rtol=0, atol=1e-13)
 
 
 def test_a_group_of_ones_own() -> None:
@@ -143,10 +143,10 @@ def test_every_class_declares_its_fields() -> None:
 
 def test_repr_names_what_is_shown() -> None:
     """For n > 3 the mass tensor alone is shown: tr(J) Id - J is not an inertia tensor there."""
-    shown = repr(SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])))
-    assert "n=4" in shown
-    assert "mass tensor J" in shown
-    assert "inertia" not in shown
+    text = repr(SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])))
+    assert "n=4" in text
+    assert "mass tensor J" in text
+    assert "inertia" not in text
     assert "inertia operator" in repr(LLSystem(nh.SO(3), constraint_subspace=[[1, 0, 0]], inertia_operator=np.eye(3)))
     assert "SE(2)" in repr(RigidBody(_homogeneous(2), nh.SE(2)))
 

@@ -83,10 +83,10 @@ class TestImpossibleBodies:
 
     def test_are_warned_of(self, made: Any) -> None:
         """The warning is one of its own, names the eigenvalue and points to the line of the user."""
-        with pytest.warns(nh.ImpossibleBodyWarning, match=r"eigenvalue -1\.5\.") as told:
+        with pytest.warns(nh.ImpossibleBodyWarning, match=r"eigenvalue -1\.5\.") as report:
             assert made(np.diag([5.0, 1.0, 1.0])) is not None
-        assert len(told) == 1
-        assert told[0].filename == __file__
+        assert len(report) == 1
+        assert report[0].filename == __file__
 
     def test_flat_bodies_are_possible(self, made: Any) -> None:
         """Flat bodies, whose mass tensor has an eigenvalue 0 to rounding, are built in silence."""

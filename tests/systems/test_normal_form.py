@@ -67,15 +67,15 @@ def test_equations_of_motion(make: Callable[[], Any]) -> None:
 def test_axes_do_not_matter(make: Callable[[], Any]) -> None:
     """A body in other axes has the same form but for a rotation of the planes, and the side that faces forward."""
     system = make()
-    named, found = system.normal_form, _elsewhere(system).normal_form
+    named, result = system.normal_form, _elsewhere(system).normal_form
 
     def invariants(form: NormalForm) -> np.ndarray:
         B = np.diag(form.stiffness) if form.is_diagonal else np.asarray(form.stiffness)
         powers = [form.coupling @ np.linalg.matrix_power(B, i) @ form.coupling for i in range(3)]
         return np.array([*np.linalg.eigvalsh(B), *powers, abs(form.arm), form.mass or 0.0])
 
-    np.testing.assert_allclose(invariants(found), invariants(named), rtol=1e-10, atol=1e-12)
-    assert (found.arm == 0) == (named.arm == 0)
+    np.testing.assert_allclose(invariants(result), invariants(named), rtol=1e-10, atol=1e-12)
+    assert (result.arm == 0) == (named.arm == 0)
 
 
 NEITHER = {

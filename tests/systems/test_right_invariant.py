@@ -23,8 +23,8 @@ def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
     """The trace form is S Ad^T I Ad S^T with Ad of the inverse, also for a stack of configurations."""
     group, S = system.group, system.constraint_subspace
     g = np.stack([group.random(_RNG) for _ in range(3)])
-    found = system.spatial_inertia(g)
-    for one, B in zip(g, found, strict=True):
+    result = system.spatial_inertia(g)
+    for one, B in zip(g, result, strict=True):
         Ad = group.adjoint(group.inverse(one))
         assert np.allclose(B, S @ Ad.T @ system.inertia_operator @ Ad @ S.T, rtol=1e-12, atol=1e-12)
     assert np.allclose(system.spatial_inertia(group.identity), system.constrained_inertia, rtol=1e-14, atol=0)

@@ -25,10 +25,10 @@ def page() -> dict[str, Any]:
 
 def test_defaults_and_what_is_kept(page: dict[str, Any]) -> None:
     """Defaults on a user's group are those of the table; group and constraint are kept, here energy too."""
-    discrete, found = page["discrete"], nh.invariants(page["orbit"])
+    discrete, result = page["discrete"], nh.invariants(page["orbit"])
     assert (discrete.difference, discrete.constraint) == ("logarithmic", "exponential")
     assert not discrete.conserves_energy
-    assert all(each < 1e-12 for each in (found.energy_drift, found.constraint_residual, found.group_residual))
+    assert all(each < 1e-12 for each in (result.energy_drift, result.constraint_residual, result.group_residual))
     assert np.ptp(page["orbit"].momentum[:, 0]) > 0.1  # it does move
     assert page["report"].passed
     assert page["report"]["energy"].status == "reported"
@@ -47,8 +47,8 @@ def test_the_message_that_is_shown(page: dict[str, Any]) -> None:
     """A logarithm without its square gives the error of the page."""
     kind = page["Heisenberg"]
     wrong = type("Heisenberg", (kind,), {"log": lambda self, g: self.vee(g - self.identity)})()
-    (shown,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
+    (text,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
     with pytest.raises(AssertionError) as raised:
         nh.testing.check_group(wrong)
-    for line in shown.splitlines()[:-1]:
+    for line in text.splitlines()[:-1]:
         assert re.search(re.escape(line).replace(re.escape("..."), ".*"), str(raised.value)), line

@@ -213,7 +213,7 @@ def test_forced_systems_pass(name: str, time_step: float) -> None:
 
 
 def _scaled(factor: float, original: Callable[..., Any]) -> Callable[..., Any]:
-    return lambda *given: factor * original(*given)
+    return lambda *arguments: factor * original(*arguments)
 
 
 @pytest.mark.parametrize(

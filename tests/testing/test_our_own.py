@@ -123,9 +123,9 @@ START, HERE = (1.0, 0.5, 0.0), np.eye(3)
 @pytest.mark.parametrize("order", [2, 4])
 def test_the_order_is_found(order: int) -> None:
     """Slopes of momenta and poses are those of the composition, and the errors are drawn."""
-    found = check_order(nh.discretize(SLEIGH, 0.2, order=order), START)
-    assert np.allclose([found.order.momentum, found.order.pose], order, atol=0.1)
-    assert found.plot().axes
+    result = check_order(nh.discretize(SLEIGH, 0.2, order=order), START)
+    assert np.allclose([result.order.momentum, result.order.pose], order, atol=0.1)
+    assert result.plot().axes
 
 
 def test_another_order_is_refused() -> None:
@@ -247,7 +247,7 @@ def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
     crooked = nh.GroupLagrangeDAlembert(nh.SE(2), ACTION, _turning, _crooked)
     report = check_discretization(nh.discretize(crooked, 0.05), throw=False)
     assert {"order of momenta", "order of configurations"} <= {result.name for result in report.failed}
-    monkeypatch.setattr(_places.Poses, "force", lambda *given: 0.0 * given[1])
+    monkeypatch.setattr(_places.Poses, "force", lambda *arguments: 0.0 * arguments[1])
     body = nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), np.diag([3.0, 1.0, 2.0])), None)
     assert "equations of motion" in {result.name for result in check_system(body, throw=False).failed}
 
@@ -265,7 +265,7 @@ def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_errors_in_equations(monkeypatch: pytest.MonkeyPatch, home: Any, name: str, expected: set[str]) -> None:
     """Forces, an energy and a power that are a tenth too large fail the checks of their own."""
     original = getattr(home, name)
-    monkeypatch.setattr(home, name, lambda *given: 1.1 * original(*given))
+    monkeypatch.setattr(home, name, lambda *arguments: 1.1 * original(*arguments))
     body = nh.Forced(nh.LagrangeDAlembert(_ball, None, dimension=2), force=_pushed)
     report = check_system(body, throw=False)
     assert {result.name for result in report.failed} == expected

@@ -34,9 +34,9 @@ def report(value: float, factor: float = 1.0) -> Report:
 
 def test_what_passes() -> None:
     """A value within its tolerance, a value without one and a property that is not claimed pass; NaN does not."""
-    found = {result.name: result.status for result in report(1e-4).results}
+    results = {result.name: result.status for result in report(1e-4).results}
     expected = {"small": "ok", "shown": "reported", "wheels": "not checked", "broken": "FAILED", "undefined": "FAILED"}
-    assert found == expected
+    assert results == expected
     assert not report(1e-4).passed
     assert run_checks("check_it(that)", CHECKS[:3], 1e-4, 1.0, throw=True).passed
 

@@ -178,10 +178,10 @@ def fit(
         >>> record = dict(zip(("x", "y", "theta"), np.c_[orbit.position, orbit.heading].T + noise.T), t=orbit.time)
         >>> def sleigh(p):
         ...     return nh.ChaplyginSleigh(mass=1.0, inertia=p["inertia"], a=p["a"])
-        >>> found = nh.fit(sleigh, record, {"inertia": 1.0, "a": 0.3})
-        >>> abs(found.parameters["a"] - 0.4) < 0.01
+        >>> fit = nh.fit(sleigh, record, {"inertia": 1.0, "a": 0.3})
+        >>> abs(fit.parameters["a"] - 0.4) < 0.01
         True
-        >>> low, high = found.profile("a").interval
+        >>> low, high = fit.profile("a").interval
         >>> low < 0.4 < high
         True
     """

@@ -80,7 +80,7 @@ def _on_nodes(columns: Names, tables: list[dict[str, Any]], nodes: list[np.ndarr
 
 
 def _columns(table: Any) -> dict[str, Any]:
-    """Return the columns of a file, an orbit, a table or a dataset by name, not yet looked at."""
+    """Return the columns of a file, an orbit, a table or a dataset by name, unchecked."""
     if isinstance(table, str | Path):
         return _of_file(checked_path(WHERE, table))
     table = table.to_pandas() if isinstance(table, AbstractOrbit) else table

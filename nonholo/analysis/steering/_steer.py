@@ -179,7 +179,7 @@ def steer(
 
 
 def _method(discrete: Any, method: Any, extras: dict[str, Any]) -> str:
-    """Return the method that can do what is asked, or refuse the one that is named."""
+    """Return a method for this problem, or refuse the one that is named."""
     where = "steer(method=...)"
     choice(where, method, (None, "shooting", "ipopt"))
     if method == "shooting":

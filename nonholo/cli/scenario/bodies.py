@@ -200,7 +200,7 @@ def is_example(name: str) -> bool:
 
 
 def import_own(path: Path | None) -> dict[str, Maker]:
-    """Run a module of the user's own, asked for by its path: each public function and class in it is a kind of body."""
+    """Run the user's module at a path: each public function and class in it is a kind of body."""
     _OWN.clear()
     if path is not None:
         module = _module_at(path)

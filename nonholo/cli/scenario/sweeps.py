@@ -143,7 +143,7 @@ class GridDesign(sections.Section):
     values: Values[Annotated[Any, sections.checked_by(along)]]
 
     def with_members(self) -> Self:
-        """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
+        """Return the design with the counts of its ranges multiplied by one factor, to have so many members."""
         if self.members is None:
             return self
         values = self.values.model_dump()
@@ -176,7 +176,7 @@ class RandomMembers(sections.Section):
     values: Values[Annotated[Any, sections.checked_by(distribution_of)]]
 
     def with_members(self) -> Self:
-        """Return the design itself: it has the members asked for."""
+        """Return the design itself: it has that number of members."""
         return self
 
     def design(self) -> "RandomDesign":

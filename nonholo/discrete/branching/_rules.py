@@ -194,12 +194,12 @@ class Chosen(AbstractBranchRule):
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values_after(kick)
         present = displacement_at(kick.discrete, kick.frame, kick.point)
-        index = call("branch(found, present)", self.function, values, present)
+        index = call("branch(branches, present)", self.function, values, present)
         if index is None:
             return _only(kick, roots, values, [])
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
-            remedy = "Choose among np.flatnonzero(found.is_real), or return None."
-            raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
+            remedy = "Choose among np.flatnonzero(branches.is_real), or return None."
+            raise error("branch(branches, present)", "return the index of a real branch or None", shown(index), remedy)
         return _only(kick, roots, values, [int(index)])
 
 

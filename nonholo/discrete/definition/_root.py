@@ -188,7 +188,7 @@ def _is_unfinished(path: _Path) -> Array:
 
 
 def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
-    """Return the path, or its beginning where Newton's method has looked at a guess in vain."""
+    """Return the path, or its beginning where Newton's method failed from a guess."""
     over = (path.count > _CORRECTIONS) | path.converged | ~jnp.all(jnp.isfinite(path.iterate))
     fails = path.trial & over & ~(path.converged & certain)
     return jax.tree.map(lambda new, old: jnp.where(fails, new, old), begin, path)

@@ -211,7 +211,7 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
 
 
 def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
-    """Return half the impulse of functions; those that numba compiled are asked before a run."""
+    """Return half the impulse of functions; those that numba compiled are evaluated before a run."""
     kick, along = _linear_part(free, forced)
     exact = exact_terms(forced)
     has = forced.function is not None or bool(exact), forced.own_potential is not None

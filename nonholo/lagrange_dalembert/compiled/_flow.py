@@ -141,7 +141,7 @@ class Series(NamedTuple):
         return float(self.nodes[0, 0, -1]) * self.unit, self.end
 
     def looks(self) -> np.ndarray:
-        """Return times at which the state is looked at for events."""
+        """Return times at which events are evaluated."""
         return looked_at([*self.nodes[:, 0, -1], self.end / self.unit], 1 / self.unit)
 
 

@@ -78,7 +78,7 @@ def ensemble(
         times: Of a system instead: the times of the states, as in `flow`.
         configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
             start at the identity by default.
-        project: Start at the admissible configurations and velocities next to the given ones, as in `simulate`.
+        project: Start at the admissible configurations and velocities closest to these, as in `simulate`.
         body_velocity: One row for each member, (M, dim), or one for all. Of bodies members start with the principal
             W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
