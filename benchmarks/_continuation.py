@@ -35,8 +35,8 @@ class Problems:
     def only(self, rows: np.ndarray) -> "Problems":
         """Return some of the problems."""
         arrays = {name: getattr(self, name) for name in ("B", "c", "r", "mass", "center", "p")}
-        kept = {name: None if x is None else x[rows] for name, x in arrays.items()}
-        return Problems([self.systems[i] for i in np.flatnonzero(rows)], **kept)
+        values = {name: None if x is None else x[rows] for name, x in arrays.items()}
+        return Problems([self.systems[i] for i in np.flatnonzero(rows)], **values)
 
     @property
     def q(self) -> np.ndarray:
@@ -154,10 +154,10 @@ def followed(problems: Problems, steps: int = 100) -> tuple[np.ndarray, np.ndarr
     sure = np.ones(len(y), dtype=bool)
     zero = np.linalg.det(problems.times(np.zeros(len(y))).slope(y))
     for i in range(1, steps + 1):
-        found, converged, det = newton(problems.times(np.full(len(y), i / steps)), 2 * y - before)
-        near = np.linalg.norm(found - y, axis=1) <= _JUMP * (1 + (y * y).sum(1))
+        result, converged, det = newton(problems.times(np.full(len(y), i / steps)), 2 * y - before)
+        near = np.linalg.norm(result - y, axis=1) <= _JUMP * (1 + (y * y).sum(1))
         sure &= converged & near & (det * zero > 0)
-        y, before = np.where(sure[:, None], found, y), y
+        y, before = np.where(sure[:, None], result, y), y
     return y, sure
 
 
@@ -167,10 +167,10 @@ def fold_factors(problems: Problems, largest: float = 100.0) -> np.ndarray:
     y, s, size = np.zeros_like(problems.r), np.zeros(count), np.full(count, 0.02)
     zero = det = np.linalg.det(problems.times(s).slope(y))
     for _ in range(600):
-        found, converged, ahead = newton(problems.times(s + size), y)
-        near = np.linalg.norm(found - y, axis=1) <= _JUMP * (1 + (y * y).sum(1))
+        result, converged, ahead = newton(problems.times(s + size), y)
+        near = np.linalg.norm(result - y, axis=1) <= _JUMP * (1 + (y * y).sum(1))
         good = converged & near & (ahead * zero > 0) & (s < largest)
-        y, s, det = np.where(good[:, None], found, y), np.where(good, s + size, s), np.where(good, ahead, det)
+        y, s, det = np.where(good[:, None], result, y), np.where(good, s + size, s), np.where(good, ahead, det)
         size = np.where(good, 1.5 * size, size / 2)
         size = np.maximum(size, 1e-11 * (s + 1e-3))
     met = (np.abs(det) < 1e-3 * np.abs(zero) * (1 + (y * y).sum(1))) & (s < largest) & (np.abs(y).max(1) < 30)

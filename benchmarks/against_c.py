@@ -40,10 +40,10 @@ def built(
     source = Path(__file__).parent / "c" / name
     contract = f"-ffp-contract={'off' if strict else 'fast'}"
     subprocess.run([compiler, *FLAGS, contract, str(source), "-o", str(library), "-lm"], check=True)  # noqa: S603
-    found = ctypes.CDLL(str(library))
+    result = ctypes.CDLL(str(library))
     for function in functions:
-        getattr(found, function).restype = ctypes.c_long
-    return found
+        getattr(result, function).restype = ctypes.c_long
+    return result
 
 
 def pointer(array: np.ndarray | None) -> ctypes.c_void_p:
@@ -60,10 +60,10 @@ def paired(library: Callable[[], None], references: tuple[Callable[[], None], ..
             begin = time.perf_counter()
             run()
             into.append((time.perf_counter() - begin) / unit)
-    found = [statistics.median(times[0])]
+    result = [statistics.median(times[0])]
     for each in times[1:]:
-        found += [statistics.median(each), statistics.median(a / b for a, b in zip(times[0], each, strict=True))]
-    return found
+        result += [statistics.median(each), statistics.median(a / b for a, b in zip(times[0], each, strict=True))]
+    return result
 
 
 def compare(
@@ -85,12 +85,12 @@ def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh,
     step = discrete.route
     body = np.array(step.body, dtype=np.float64)
     first = step.encode(system.to_canonical(system.restricted_momentum(velocity)))
-    unit, kept = np.array([1.0, 0.0, 0.0, 0.0]), new_rows(STEPS)
+    unit, values = np.array([1.0, 0.0, 0.0, 0.0]), new_rows(STEPS)
 
-    def reference(found: ctypes.CDLL, rows: Callable[[], tuple]) -> Callable[[], None]:
+    def reference(code: ctypes.CDLL, rows: Callable[[], tuple]) -> Callable[[], None]:
         def run() -> None:
             m, q, into = first.copy(), unit.copy(), rows()
-            done = getattr(found, name)(*map(pointer, (body, m, q)), ctypes.c_long(STEPS), *map(pointer, into))
+            done = getattr(code, name)(*map(pointer, (body, m, q)), ctypes.c_long(STEPS), *map(pointer, into))
             assert done == STEPS
 
         return run
@@ -102,20 +102,20 @@ def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh,
     def call() -> nh.Orbit:
         return nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
 
-    kernel(kept, 1)
-    momenta = kept[0].copy()
-    reference(both[0], lambda: kept)()
+    kernel(values, 1)
+    momenta = values[0].copy()
+    reference(both[0], lambda: values)()
     scale = np.abs(first).max()
-    for found in (step.encode(call().reduced_momentum[1:]), momenta):
-        assert np.allclose(found, kept[0], rtol=0, atol=1e-11 * scale)
+    for result in (step.encode(call().reduced_momentum[1:]), momenta):
+        assert np.allclose(result, values[0], rtol=0, atol=1e-11 * scale)
     for case, library, rows in (
         ("nothing stored", lambda: kernel(new_rows(0), STEPS + 1), lambda: (None, None, None)),
-        ("stored, kept rows", lambda: kernel(kept, 1), lambda: kept),
+        ("stored, kept rows", lambda: kernel(values, 1), lambda: values),
         ("stored, new rows", lambda: kernel(new_rows(STEPS), 1), lambda: new_rows(STEPS)),
-        ("stored: call, C: kept rows", call, lambda: kept),
+        ("stored: call, C: kept rows", call, lambda: values),
         ("stored: call, C: new rows", call, lambda: new_rows(STEPS)),
     ):
-        compare(f"{name} {case}", library, tuple(reference(found, rows) for found in both), STEPS)
+        compare(f"{name} {case}", library, tuple(reference(code, rows) for code in both), STEPS)
 
 
 def new_rows(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -139,10 +139,10 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
     empty = np.empty((0, k + slides)), np.empty((0, k + slides)), np.empty((0, 0))
     ends = {}
 
-    def reference(found: ctypes.CDLL) -> None:
+    def reference(code: ctypes.CDLL) -> None:
         m, lost, blade = first[:k].copy(), np.zeros(k), np.array([first[k] if slides else 0.0, 0.0])
         numbers = ctypes.c_double(step.body.mass), ctypes.c_double(step.body.arm), pointer(blade)
-        done = found.wide(ctypes.c_long(k), *map(pointer, (b, c, m, lost)), *numbers, ctypes.c_long(steps))
+        done = code.wide(ctypes.c_long(k), *map(pointer, (b, c, m, lost)), *numbers, ctypes.c_long(steps))
         assert done == steps
         ends["c"] = m
 
@@ -153,11 +153,11 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
         ends["library"] = state[:k]
 
     library()
-    for found in both:
-        reference(found)
+    for code in both:
+        reference(code)
         assert np.allclose(ends["c"], ends["library"], rtol=0, atol=1e-12 * np.abs(first).max())
     case = f"{'SE(n)' if slides else 'SO(n)'} n = {n}"
-    runs = tuple(functools.partial(reference, found) for found in both)
+    runs = tuple(functools.partial(reference, code) for code in both)
     compare(case, library, runs, steps, ROUNDS if n < MANY else 5)
 
 

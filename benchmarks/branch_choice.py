@@ -49,9 +49,9 @@ def within(problems: Problems, step: Step) -> Counter:
     references = np.stack([problems.displacement(y), ahead.displacement(y_ahead)], axis=1)
     counts: Counter = Counter()
     for system, r, W, exists in zip(problems.systems, problems.restricted, references, sure & sure_ahead, strict=True):
-        outcome, found = step(nh.discretize(system, 1.0), r)
+        outcome, result = step(nh.discretize(system, 1.0), r)
         if outcome == 0:
-            missed = np.abs(found - W[-len(found) :]).max() / np.abs(W).max()
+            missed = np.abs(result - W[-len(result) :]).max() / np.abs(W).max()
             counts[("right" if missed < SAME else "wrong") if exists else "right or wrong, no reference"] += 1
         else:
             counts[f"{outcome}, though followed" if exists else f"{outcome}, not followed either"] += 1
@@ -67,14 +67,14 @@ def beyond(problems: Problems, rng: np.random.Generator, step: Step) -> Counter:
 
 def folded(family: str, count: int, rng: np.random.Generator) -> list[Problems]:
     """Draw problems whose ray has a fold, with their momenta at it."""
-    found: list[Problems] = []
-    while sum(len(part.r) for part in found) < count:
+    result: list[Problems] = []
+    while sum(len(part.r) for part in result) < count:
         problems = random_problems(family, count, rng)
         factors = fold_factors(problems)
-        met = np.flatnonzero(np.isfinite(factors))[: count - sum(len(part.r) for part in found)]
+        met = np.flatnonzero(np.isfinite(factors))[: count - sum(len(part.r) for part in result)]
         chosen = np.isin(np.arange(count), met)
-        found.append(problems.only(chosen).times(factors[chosen]))
-    return found
+        result.append(problems.only(chosen).times(factors[chosen]))
+    return result
 
 
 def main(count: int) -> None:

@@ -39,43 +39,43 @@ BODIES = {
 
 def calls() -> dict[str, Callable[[], Any]]:
     """Return the calls by name."""
-    found: dict[str, Callable[[], Any]] = {"SuslovTop(...)": lambda: nh.SuslovTop(np.array(TOP.mass_tensor))}
-    found["ChaplyginSleigh(...)"] = lambda: nh.ChaplyginSleigh(1.0, 0.75, 0.5)
+    result: dict[str, Callable[[], Any]] = {"SuslovTop(...)": lambda: nh.SuslovTop(np.array(TOP.mass_tensor))}
+    result["ChaplyginSleigh(...)"] = lambda: nh.ChaplyginSleigh(1.0, 0.75, 0.5)
     for name, system in (("top", TOP), ("sleigh", SLEIGH)):
         discrete = nh.discretize(system, 0.1)
         orbit = nh.simulate(discrete, body_velocity=VELOCITY, steps=100)
-        found[f"discretize, {name}"] = lambda system=system: nh.discretize(system, 0.1)
-        found[f"simulate, {name}, 100 steps"] = lambda discrete=discrete: nh.simulate(
+        result[f"discretize, {name}"] = lambda system=system: nh.discretize(system, 0.1)
+        result[f"simulate, {name}, 100 steps"] = lambda discrete=discrete: nh.simulate(
             discrete, body_velocity=VELOCITY, steps=100
         )
-        found[f"invariants, {name}"] = lambda orbit=orbit: nh.invariants(orbit)
-        found[f"flow, {name}, T = 20"] = lambda system=system: nh.flow(
+        result[f"invariants, {name}"] = lambda orbit=orbit: nh.invariants(orbit)
+        result[f"flow, {name}, T = 20"] = lambda system=system: nh.flow(
             system, body_velocity=VELOCITY, times=(0.0, 20.0)
         )
-    return found
+    return result
 
 
 def microseconds(call: Callable[[], Any], rounds: int) -> float:
     """Return the median of rounds of warm calls, in time of the processor."""
     call()
-    taken = []
+    durations = []
     for _ in range(rounds):
         begun = time.process_time()
         for _ in range(CALLS):
             call()
-        taken.append((time.process_time() - begun) / CALLS * 1e6)
-    return statistics.median(taken)
+        durations.append((time.process_time() - begun) / CALLS * 1e6)
+    return statistics.median(durations)
 
 
 def seconds(programs: dict[str, Path], rounds: int) -> dict[str, float]:
     """Return medians of whole processes, in turns."""
-    taken: dict[str, list[float]] = {name: [] for name in programs}
+    durations: dict[str, list[float]] = {name: [] for name in programs}
     for _ in range(rounds + 1):
         for name, file in programs.items():
             begun = time.perf_counter()
             subprocess.run([sys.executable, str(file)], check=True)  # noqa: S603
-            taken[name].append(time.perf_counter() - begun)
-    return {name: statistics.median(found[1:]) for name, found in taken.items()}
+            durations[name].append(time.perf_counter() - begun)
+    return {name: statistics.median(result[1:]) for name, result in durations.items()}
 
 
 def warm(rounds: int) -> dict[str, float]:
@@ -85,17 +85,17 @@ def warm(rounds: int) -> dict[str, float]:
 
 def compared(other: str, rounds: int) -> None:
     """Print medians of both commits, and of their ratios."""
-    command, found = [sys.executable, __file__, "--rounds", "11", "--json"], []
+    command, result = [sys.executable, __file__, "--rounds", "11", "--json"], []
     for _ in range(rounds):
         pair = []
         for folder in (other, str(Path(nh.__file__).parents[1])):
             environment = {**os.environ, "PYTHONPATH": folder}
             done = subprocess.run(command, check=True, env=environment, capture_output=True)  # noqa: S603
             pair.append(json.loads(done.stdout))
-        found.append(pair)
+        result.append(pair)
     print("| call | us there | us here | there / here |\n| --- | ---: | ---: | ---: |")
-    for name in found[0][0]:
-        there, here = ([pair[side][name] for pair in found] for side in (0, 1))
+    for name in result[0][0]:
+        there, here = ([pair[side][name] for pair in result] for side in (0, 1))
         ratio = statistics.median(a / b for a, b in zip(there, here, strict=True))
         print(f"| {name} | {statistics.median(there):.0f} | {statistics.median(here):.0f} | {ratio:.2f} |")
 
@@ -115,19 +115,19 @@ def main() -> None:
         compared(arguments.against, rounds)
         return
     print("| call | us |\n| --- | ---: |")
-    for name, taken in warm(rounds).items():
-        print(f"| {name} | {taken:.0f} |", flush=True)
+    for name, durations in warm(rounds).items():
+        print(f"| {name} | {durations:.0f} |", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         texts = {"NumPy": FLOOR}
-        texts |= {f"{what}, {body}": text.format(made) for what, text in FIRST.items() for body, made in BODIES.items()}
+        texts |= {f"{what}, {body}": text.format(code) for what, text in FIRST.items() for body, code in BODIES.items()}
         programs = {name: Path(folder, f"{name.replace(' ', '_')}.py") for name in texts}
         for name, file in programs.items():
             file.write_text(texts[name])
-        found = seconds(programs, rounds)
-    floor = found.pop("NumPy")
+        result = seconds(programs, rounds)
+    floor = result.pop("NumPy")
     print(f"\n| first call in a process | s above the {floor:.2f} s of NumPy |\n| --- | ---: |")
-    for name, taken in found.items():
-        print(f"| {name} | {taken - floor:.2f} |")
+    for name, durations in result.items():
+        print(f"| {name} | {durations - floor:.2f} |")
 
 
 if __name__ == "__main__":

@@ -69,17 +69,17 @@ def random_momentum(rng: np.random.Generator, discrete: nh.Discretization) -> tu
     return momentum(point(inner)) * (1 + rng.choice([-1, 1]) * off), off
 
 
-def disagreement(certified: Branches, found: Branches) -> str:
+def disagreement(certified: Branches, branches: Branches) -> str:
     """Return in which way numerical branches differ from certified ones; nothing if they agree."""
-    if certified.multiplicity.sum() != found.multiplicity.sum():
+    if certified.multiplicity.sum() != branches.multiplicity.sum():
         return "number of values"
-    if (certified.multiplicity * certified.is_real).sum() != (found.multiplicity * found.is_real).sum():
+    if (certified.multiplicity * certified.is_real).sum() != (branches.multiplicity * branches.is_real).sum():
         return "number of real values"
-    if len(certified) != len(found):
+    if len(certified) != len(branches):
         return "multiplicity"
-    left = list(range(len(found)))
+    left = list(range(len(branches)))
     for W in certified.displacement:
-        missed = [np.abs(found.displacement[i] - W).max() / max(1.0, np.abs(W).max()) for i in left]
+        missed = [np.abs(branches.displacement[i] - W).max() / max(1.0, np.abs(W).max()) for i in left]
         if min(missed) > 1e-6:
             return "a displacement"
         left.pop(int(np.argmin(missed)))
@@ -91,7 +91,7 @@ def count(discrete: nh.Discretization, canonical: np.ndarray) -> list[Located]:
     return locate(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
 
 
-def miscounted(found: list[Located]) -> bool:
+def miscounted(result: list[Located]) -> bool:
     """Return whether FLINT isolates other numbers of real and of all roots."""
 
     def differs(x: Located) -> bool:
@@ -99,7 +99,7 @@ def miscounted(found: list[Located]) -> bool:
         ours = [mu.imag == 0 for mu in x.balls]
         return sum(z.imag == 0 for z, _ in roots) != sum(ours) or len(roots) != 2 * len(ours) - sum(ours)
 
-    return any(differs(x) for x in found)
+    return any(differs(x) for x in result)
 
 
 def timed(task: Callable[..., object], *arguments: object) -> tuple[float, float]:
@@ -120,9 +120,9 @@ def alone(task: Callable[..., object], problems: list[tuple]) -> np.ndarray:
     return np.min(rounds, axis=0)
 
 
-def report(name: str, task: Callable[..., object], problems: list[tuple], taken: list[tuple[float, float]]) -> None:
+def report(name: str, task: Callable[..., object], problems: list[tuple], durations: list[tuple[float, float]]) -> None:
     """Print median, tail and worst time, and what is left of the slow ones when they are repeated alone."""
-    clock, busy = np.array(taken).T
+    clock, busy = np.array(durations).T
     repeated = alone(task, [problem for problem, seconds in zip(problems, clock, strict=True) if seconds > LIMIT])
     median, tail, worst = 1e3 * np.quantile(clock, [0.5, 0.99, 1.0])
     print(f"{name:12} median {median:.2f} ms, 99 % {tail:.2f}, worst {worst:.2f}", end="; ")
@@ -152,8 +152,8 @@ def main(problems: int = 10_000, seed: int = 0) -> None:
         seconds["certificate", kind].append(timed(enclosures, *problem))
         wrong += miscounted(count(*problem))
         certified = nh.displacements_over(discrete, r, certify=True)
-        found = nh.displacements_over(discrete, r)
-        outcome = certified.uncertified or disagreement(certified, found) or "agree"
+        result = nh.displacements_over(discrete, r)
+        outcome = certified.uncertified or disagreement(certified, result) or "agree"
         outcomes[place_of(off), outcome] += 1
         if outcome != "agree" and off > 1e-12:
             print(f"problem {i} of seed {seed}, {kind}: {outcome} at distance {off:.1e} of a fold")

@@ -69,9 +69,9 @@ def long_gradient(steps: int, options: dict[str, bool]) -> None:
     """Print the time of a gradient of a top and what memory its process has used at most, in MB."""
     end, at = end_of("top", steps, steps)
     began = time.perf_counter()
-    found = jax.block_until_ready(jax.jit(jax.grad(end, argnums=(0, 1)), compiler_options=options)(*at))
+    result = jax.block_until_ready(jax.jit(jax.grad(end, argnums=(0, 1)), compiler_options=options)(*at))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(time.perf_counter() - began, peak, float(jnp.abs(found[1]).max()))
+    print(time.perf_counter() - began, peak, float(jnp.abs(result[1]).max()))
 
 
 def main() -> None:

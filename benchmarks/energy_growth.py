@@ -95,20 +95,20 @@ def measure(name: str, counts: list[int], time_step: float, order: int, *, rever
     """Print the error at each count, the exponent between counts, and the law that fits."""
     discrete = nh.discretize(BODIES[name], time_step, order=order)
     runs = [Live(discrete, number, reverse=reverse) for number in range(STARTS)]
-    found, before = [], 0
+    result, before = [], 0
     print(f"{name}, time step {time_step}, order {order}")
     for count in counts:
         for run in runs:
             run.run(count - before)
         errors = np.array([run.error() for run in runs])
-        found.append(np.sqrt(np.mean(errors**2)))
-        slope = f"exponent {np.log10(found[-1] / found[-2]):5.2f}, " if before else 16 * " "
+        result.append(np.sqrt(np.mean(errors**2)))
+        slope = f"exponent {np.log10(result[-1] / result[-2]):5.2f}, " if before else 16 * " "
         print(
-            f"  {count:8.0e} steps: rms {found[-1]:.2e}, {slope}mean {errors.mean():+.1e}, "
+            f"  {count:8.0e} steps: rms {result[-1]:.2e}, {slope}mean {errors.mean():+.1e}, "
             f"largest {np.abs(errors).max():.1e}, {sum(run.crossings for run in runs) // STARTS} crossings each"
         )
         before = count
-    exponent, constant = np.polyfit(np.log(counts), np.log(found), 1)
+    exponent, constant = np.polyfit(np.log(counts), np.log(result), 1)
     print(f"  fit: {np.exp(constant):.1e} N^{exponent:.2f}; 0.5 is a random walk of roundings, 1 a constant loss")
 
 

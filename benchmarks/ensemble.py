@@ -53,13 +53,13 @@ def compare(both: tuple, name: str, posed: bool) -> None:
     axes = kernels.MemberAxes(np.ones((1, 13)), False, 0)
     m, q = first.copy(), unit.copy()
 
-    def part_of_c(found: ctypes.CDLL, part: slice) -> int:
+    def part_of_c(result: ctypes.CDLL, part: slice) -> int:
         m[part], q[part] = first[part], unit[part]
         last, count = pointer(q[part] if posed else None), ctypes.c_long(part.stop - part.start)
-        return getattr(found, name)(pointer(body), pointer(m[part]), last, count, ctypes.c_long(STEPS))
+        return getattr(result, name)(pointer(body), pointer(m[part]), last, count, ctypes.c_long(STEPS))
 
-    def reference(found: ctypes.CDLL, pool: ThreadPoolExecutor) -> None:
-        assert not any(pool.map(functools.partial(part_of_c, found), parts(pool._max_workers)))
+    def reference(result: ctypes.CDLL, pool: ThreadPoolExecutor) -> None:
+        assert not any(pool.map(functools.partial(part_of_c, result), parts(pool._max_workers)))
 
     def kernel(part: slice) -> None:
         own = kernels.MemberRows(*(array[part] for array in rows))
@@ -79,7 +79,7 @@ def compare(both: tuple, name: str, posed: bool) -> None:
     for threads in dict.fromkeys((1, THREADS)):
         numba.config.NUMBA_NUM_THREADS = threads
         with ThreadPoolExecutor(threads) as pool:
-            references = tuple(functools.partial(reference, found, pool) for found in both)
+            references = tuple(functools.partial(reference, result, pool) for result in both)
             case = f"{name}{', pose' if posed else ''}, {threads} on each side"
             beside(f"kernel {case}", lambda pool=pool: [*pool.map(kernel, parts(pool._max_workers))], references, UNIT)
             beside(f"call {case}", call, references, UNIT)
@@ -99,9 +99,9 @@ def largest_exponent(block: nh.Ensemble) -> np.ndarray:
 def tangents(name: str, members: int = small(400, 2), steps: int = small(1000, 10)) -> None:
     """Print what "lyapunov" takes beside the plain run of the same members, which keeps their last states."""
     discrete, rng = nh.discretize(SYSTEMS[name], TIME_STEP), np.random.default_rng(2)
-    given = {"restricted_velocity": rng.normal(size=(members, 2)), "steps": steps}
-    plain = functools.partial(nh.ensemble, discrete, **given)
-    reduced = functools.partial(nh.ensemble, discrete, **given, save_every=1, reduce=largest_exponent)
+    arguments = {"restricted_velocity": rng.normal(size=(members, 2)), "steps": steps}
+    plain = functools.partial(nh.ensemble, discrete, **arguments)
+    reduced = functools.partial(nh.ensemble, discrete, **arguments, save_every=1, reduce=largest_exponent)
     reduced(), plain()
     slow, fast, ratio = paired(reduced, (plain,), members, 11)
     print(f"{name:7} lyapunov {1e6 * slow:8.1f} us a member of {steps} steps, plain {1e6 * fast:8.1f} us {ratio:6.1f}")
@@ -131,15 +131,15 @@ def many(members: int, steps: int) -> None:
     velocities = np.random.default_rng(1).normal(size=(members, 2))
     before = peak()
     begin = time.perf_counter()
-    found = nh.ensemble(discrete, restricted_velocity=velocities, steps=steps, reduce=energy_and_heading)
+    result = nh.ensemble(discrete, restricted_velocity=velocities, steps=steps, reduce=energy_and_heading)
     took = time.perf_counter() - begin
     for member in (0, members // 2, members - 1):
         orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=steps)
-        assert abs(found["energy"][member] - orbit.energy[-1]) < 1e-14 * orbit.energy[0]
-        assert abs(found["heading"][member] - orbit.heading[-1]) < 1e-13
-    given = velocities.nbytes / 2**20
+        assert abs(result["energy"][member] - orbit.energy[-1]) < 1e-14 * orbit.energy[0]
+        assert abs(result["heading"][member] - orbit.heading[-1]) < 1e-13
+    arguments = velocities.nbytes / 2**20
     print(f"{members:,} members x {steps} steps with reduce: {took:.1f} s, all threads, checks included")
-    print(f"starts {given:.0f} MiB; peak {before:.0f} MiB before the call, {peak():.0f} MiB after it")
+    print(f"starts {arguments:.0f} MiB; peak {before:.0f} MiB before the call, {peak():.0f} MiB after it")
 
 
 def peak() -> float:

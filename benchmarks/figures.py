@@ -46,7 +46,7 @@ ELSEWHERE = {
 def sizes() -> str:
     """Return the table of files and code lines of each folder, and what follows from them."""
     lines = {folder: Counter(dict(code_lines(ROOT / folder))) for folder in FOLDERS}
-    rows = [f"| `{name}` | {len(found)} | {found.total():,} |" for name, found in lines.items()]
+    rows = [f"| `{name}` | {len(result)} | {result.total():,} |" for name, result in lines.items()]
     names = len(dir(nh)) + sum(len(getattr(nh, room).__all__) for room in ("examples", "plot", "testing"))
     core, tested = lines["nonholo"].total(), lines["tests"].total()
     return "\n".join(
@@ -120,9 +120,9 @@ PARTS: dict[str, Callable[[], str]] = {
 }
 
 
-def page(found: dict[str, Any], fuzz: dict[str, Any]) -> str:
+def page(result: dict[str, Any], fuzz: dict[str, Any]) -> str:
     """Return the text of the page."""
-    parts = [f"## {name.replace('_', ' ').capitalize()}\n\n{_part(name, found.get(name))}" for name in PARTS]
+    parts = [f"## {name.replace('_', ' ').capitalize()}\n\n{_part(name, result.get(name))}" for name in PARTS]
     fuzzed = "\n".join(f"| {name} | {_FUZZED[name](fuzz[name]) if name in fuzz else 'not run'} |" for name in _FUZZED)
     others = "\n".join(f"| `{command}` | {about} |" for command, about in ELSEWHERE.items())
     return _TEXT.format(parts="\n\n".join(parts), fuzz=fuzzed, others=others)
@@ -135,32 +135,32 @@ def _part(name: str, part: dict[str, str] | None) -> str:
     return f"{part['about']}\n\n{table}"
 
 
-def _api(found: dict[str, Any]) -> str:
-    classes = found["classes"]
+def _api(result: dict[str, Any]) -> str:
+    classes = result["classes"]
     return (
-        f"{found['trials']:,} calls of {found['call forms']} forms: {_listed(classes)}; {found['named']:,} of the "
+        f"{result['trials']:,} calls of {result['call forms']} forms: {_listed(classes)}; {result['named']:,} of the "
         f"{classes['refused']:,} refusals name the argument that was changed"
     )
 
 
-def _stores(found: dict[str, Any]) -> str:
-    rows = (f"{name}: {_listed(row)}" for name, row in found["classes"].items())
-    return f"{found['openings']:,} openings. " + "; ".join(rows)
+def _stores(result: dict[str, Any]) -> str:
+    rows = (f"{name}: {_listed(row)}" for name, row in result["classes"].items())
+    return f"{result['openings']:,} openings. " + "; ".join(rows)
 
 
-def _kills(found: dict[str, Any]) -> str:
+def _kills(result: dict[str, Any]) -> str:
     return "; ".join(
         f"{name}: {row}" if isinstance(row, str) else f"{name}: {row['killed']} killed, {len(row['wrong'])} wrong"
-        for name, row in found.items()
+        for name, row in result.items()
     )
 
 
-def _steps(found: dict[str, Any]) -> str:
-    total = Counter(found["all"])
+def _steps(result: dict[str, Any]) -> str:
+    total = Counter(result["all"])
     wrong = sum(count for name, count in total.items() if name.startswith(("wrong", "not finite")))
     regular = sum(count for name, count in total.items() if name.startswith("refused though"))
     return (
-        f"{total['steps']:,} steps of {len(found['families'])} families, of which {total['solve the equation']:,} "
+        f"{total['steps']:,} steps of {len(result['families'])} families, of which {total['solve the equation']:,} "
         f"solve their equation; of {total['sampled']:,} drawn ones {total['the root of the continuation']:,} are the "
         f"root of the continuation and {total['undecided']:,} are undecided; of {total['refused']:,} refusals "
         f"{total['refused at a fold']:,} are at a fold, {total['refused, undecided']:,} undecided and {regular:,} "
@@ -204,15 +204,15 @@ def main() -> None:
     """Compute the parts, and write the page."""
     parser = options(__doc__)
     parser.add_argument("--parts", nargs="*", choices=PARTS, default=list(PARTS), help="all by default; none: the page")
-    found = json.loads(DATA.read_text()) if DATA.exists() else {}
+    result = json.loads(DATA.read_text()) if DATA.exists() else {}
     for name in parser.parse_args().parts:
         about, begun = machine(), time.perf_counter()
         text = PARTS[name]()
-        found[name] = {"about": f"{about.partition(chr(10))[0]} {time.perf_counter() - begun:.0f} s.", "text": text}
+        result[name] = {"about": f"{about.partition(chr(10))[0]} {time.perf_counter() - begun:.0f} s.", "text": text}
         print(f"{name}: {time.perf_counter() - begun:.0f} s", flush=True)
         if not SMOKE:
-            DATA.write_text(json.dumps({name: found[name] for name in PARTS if name in found}, indent=1) + "\n")
-    text = page(found, json.loads(FUZZ.read_text()))
+            DATA.write_text(json.dumps({name: result[name] for name in PARTS if name in result}, indent=1) + "\n")
+    text = page(result, json.loads(FUZZ.read_text()))
     if SMOKE:
         print(text)
     else:

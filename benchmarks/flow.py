@@ -26,7 +26,7 @@ SAMPLES, MEMBERS, MODERATE = small((1_000_000, 20_000, 100), (1000, 16, 10))
 
 def rows(problem: Problem, end: float, rounds: int) -> list[tuple[str, ...]]:
     """Return times and errors at one end, tolerance by tolerance."""
-    problem, times, found = problem._replace(end=end), np.array([0.0, end]), []
+    problem, times, result = problem._replace(end=end), np.array([0.0, end]), []
     wanted = reference(problem, end)
     for tolerance in TOLERANCES:
         start_of = {"body_velocity": problem.velocity, "times": times, "rtol": tolerance}
@@ -34,15 +34,15 @@ def rows(problem: Problem, end: float, rounds: int) -> list[tuple[str, ...]]:
         runs: dict[str, Callable[[], Any]] = {
             "heyoka": lambda solve=taylor, tolerance=tolerance: solve(tolerance),
             "integration": integration(problem.system, times, tolerance, body_velocity=problem.velocity),
-            "call": lambda given=start_of: nh.flow(problem.system, **given),
+            "call": lambda arguments=start_of: nh.flow(problem.system, **arguments),
         }
         errors = error(problem, runs["heyoka"](), wanted), error(problem, last(runs["call"]()), wanted)
         assert max(errors) < 1e4 * tolerance + 1e-11, errors
-        taken = in_turns(runs, rounds)
-        row = [f"{statistics.median(seconds) * 1e6:.1f}" for seconds in taken.values()]
-        ratios = [f"{median_ratio(taken[name], taken['heyoka']):.2f}" for name in ("integration", "call")]
-        found.append((problem.name, f"{end:g}", f"{tolerance:.0e}", *row, *ratios, *(f"{one:.1e}" for one in errors)))
-    return found
+        durations = in_turns(runs, rounds)
+        row = [f"{statistics.median(seconds) * 1e6:.1f}" for seconds in durations.values()]
+        ratios = [f"{median_ratio(durations[name], durations['heyoka']):.2f}" for name in ("integration", "call")]
+        result.append((problem.name, f"{end:g}", f"{tolerance:.0e}", *row, *ratios, *(f"{one:.1e}" for one in errors)))
+    return result
 
 
 def samples(problem: Problem, rounds: int) -> tuple[str, ...]:
@@ -62,9 +62,9 @@ def samples(problem: Problem, rounds: int) -> tuple[str, ...]:
     runs = {"heyoka": peer, "call": lambda: nh.flow(problem.system, body_velocity=problem.velocity, times=grid)}
     wanted = reference(problem, problem.end)
     assert max(error(problem, runs["heyoka"](), wanted), error(problem, last(runs["call"]()), wanted)) < 1e-11
-    taken = in_turns(runs, rounds)
-    ns = [f"{statistics.median(seconds) / SAMPLES * 1e9:.0f} ns" for seconds in taken.values()]
-    return problem.name, "a sample of a million", *ns, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
+    durations = in_turns(runs, rounds)
+    ns = [f"{statistics.median(seconds) / SAMPLES * 1e9:.0f} ns" for seconds in durations.values()]
+    return problem.name, "a sample of a million", *ns, f"{median_ratio(durations['call'], durations['heyoka']):.2f}"
 
 
 def ensembles(problem: Problem, rounds: int) -> tuple[str, ...]:
@@ -96,23 +96,23 @@ def ensembles(problem: Problem, rounds: int) -> tuple[str, ...]:
             "call": lambda: nh.ensemble(problem.system, body_velocity=full, times=(0.0, problem.end)),
         }
         batch = runs["call"]()
-        found = batch.body_velocity[:, -1, :2] - runs["heyoka"]()[:2].T
-        assert np.abs(found).max() < 1e-11, np.abs(found).max()
-        taken = in_turns(runs, rounds)
-    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in taken.values()]
-    return problem.name, f"a member of {MEMBERS:,}", *us, f"{median_ratio(taken['call'], taken['heyoka']):.2f}"
+        result = batch.body_velocity[:, -1, :2] - runs["heyoka"]()[:2].T
+        assert np.abs(result).max() < 1e-11, np.abs(result).max()
+        durations = in_turns(runs, rounds)
+    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in durations.values()]
+    return problem.name, f"a member of {MEMBERS:,}", *us, f"{median_ratio(durations['call'], durations['heyoka']):.2f}"
 
 
 def momenta(n: int, rounds: int) -> tuple[str, ...]:
     """Return times of a top on SO(n) over ten units of time, with poses where they are moderate, and momenta alone."""
     rng = np.random.default_rng(n)
     top = nh.SuslovTop.arrowhead(rng.uniform(1, 2, n), rng.normal(size=n - 1) / np.sqrt(n))
-    given = {"restricted_velocity": rng.normal(size=n - 1) / np.sqrt(n), "times": (0.0, 10.0)}
+    arguments = {"restricted_velocity": rng.normal(size=n - 1) / np.sqrt(n), "times": (0.0, 10.0)}
     kinds = (True, False) if n <= MODERATE else (False,)
-    runs = {str(poses): lambda poses=poses: nh.flow(top, **given, reconstruct=poses) for poses in kinds}
-    taken = in_turns(runs, rounds)
-    ms = [f"{statistics.median(seconds) * 1e3:.3g} ms" for seconds in taken.values()]
-    ratio = f"{median_ratio(taken['True'], taken['False']):.0f}" if n <= MODERATE else ""
+    runs = {str(poses): lambda poses=poses: nh.flow(top, **arguments, reconstruct=poses) for poses in kinds}
+    durations = in_turns(runs, rounds)
+    ms = [f"{statistics.median(seconds) * 1e3:.3g} ms" for seconds in durations.values()]
+    ratio = f"{median_ratio(durations['True'], durations['False']):.0f}" if n <= MODERATE else ""
     return f"top on SO({n:,})", *ms, ratio
 
 
@@ -120,14 +120,14 @@ def parameters(system: nh.SuslovTop | nh.ChaplyginSleigh, name: str, rounds: int
     """Return times a member without and with parameters, in one thread."""
     rng = np.random.default_rng(0)
     scale = rng.uniform(1, 2, MEMBERS).reshape(-1, *(1,) * np.ndim(getattr(system, name)))
-    given = {"restricted_velocity": rng.normal(size=(MEMBERS, 2)) * 0.5, "times": (0.0, 1.0)}
+    arguments = {"restricted_velocity": rng.normal(size=(MEMBERS, 2)) * 0.5, "times": (0.0, 1.0)}
     with in_one_thread():
         runs = {
-            "same": lambda: nh.ensemble(system, **given),
-            "own": lambda: nh.ensemble(system, **given, parameters={name: scale * getattr(system, name)}),
+            "same": lambda: nh.ensemble(system, **arguments),
+            "own": lambda: nh.ensemble(system, **arguments, parameters={name: scale * getattr(system, name)}),
         }
-        taken = in_turns(runs, rounds)
-    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in taken.values()]
+        durations = in_turns(runs, rounds)
+    us = [f"{statistics.median(seconds) / MEMBERS * 1e6:.1f} us" for seconds in durations.values()]
     return type(system).__name__, f"a member of {MEMBERS:,}, T = 1, each with its {name}", *us
 
 

@@ -54,11 +54,12 @@ class Series:
         return Series(lambda j: self.terms[j] * c.numerator // c.denominator)
 
     def __truediv__(self, other: "Series") -> "Series":
-        made = Series(lambda _: 0)
-        made.term = lambda j: (
-            ((self.terms[j] << BITS) - sum(map(operator.mul, made.terms, reversed(other.terms[1:])))) // other.terms[0]
+        series = Series(lambda _: 0)
+        series.term = lambda j: (
+            ((self.terms[j] << BITS) - sum(map(operator.mul, series.terms, reversed(other.terms[1:]))))
+            // other.terms[0]
         )
-        return made
+        return series
 
 
 def reference(body: Body) -> State:
@@ -67,14 +68,14 @@ def reference(body: Body) -> State:
     numbers = [int(Fraction(x) * 2**BITS) for x in first_of(body).tolist()]
     z = [Series(lambda _: 0) for _ in numbers]
     slopes = rates_of(body, number=lambda c: c)(z)
-    made = Series.nodes[len(z) :]
+    nodes = Series.nodes[len(z) :]
     for _ in range(END << LONG_STEP):
         for variable, number in zip(z, numbers, strict=True):
             variable.terms = [number]
-        for node in made:
+        for node in nodes:
             node.terms = []
         for j in range(ORDER):
-            for node in made:
+            for node in nodes:
                 node.terms.append(node.term(j))
             for variable, slope in zip(z, slopes, strict=True):
                 variable.terms.append((slope.terms[j] >> LONG_STEP) // (j + 1))
@@ -84,9 +85,9 @@ def reference(body: Body) -> State:
     return state_of(body, np.array([np.longdouble(high) + np.longdouble(low) for high, low in rounded]))
 
 
-def error(found: State, wanted: State) -> float:
+def error(result: State, wanted: State) -> float:
     """Return the largest error of velocity and pose, relative where they are large."""
-    pairs = zip(found, wanted, strict=True)
+    pairs = zip(result, wanted, strict=True)
     return float(max(np.abs(one - other).max() / max(1.0, np.abs(other).max()) for one, other in pairs))
 
 
@@ -132,15 +133,15 @@ def main() -> None:
     parser = options(__doc__)
     parser.add_argument("--end", type=float, default=small(1e5, 100.0))
     parser.add_argument("--only", nargs="+", default=list(bodies())[: small(None, 1)])
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     if reason := missing("heyoka"):
         leave_out(reason)
     print("| body | error of heyoka | error | ratio |\n| --- | ---: | ---: | ---: |", flush=True)
-    for name in given.only:
+    for name in arguments.only:
         print("|", " | ".join(errors(bodies()[name])), "|", flush=True)
     print("\n| body | energy | constraint | group | power |\n| --- | ---: | ---: | ---: | ---: |", flush=True)
-    for name in given.only:
-        print("|", " | ".join(kept(bodies()[name], given.end)), "|", flush=True)
+    for name in arguments.only:
+        print("|", " | ".join(kept(bodies()[name], arguments.end)), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -66,9 +66,9 @@ def diffrax_dopri8(body: Body) -> Solve:
     return solve
 
 
-def refuse_unless_equal(found: State, wanted: State, tolerance: float) -> None:
+def refuse_unless_equal(result: State, wanted: State, tolerance: float) -> None:
     """Refuse what integrates another motion."""
-    for one, other in zip(found, wanted, strict=True):
+    for one, other in zip(result, wanted, strict=True):
         missed = np.abs(one - other).max() / max(1.0, np.abs(other).max())
         assert missed < tolerance, missed
 
@@ -85,18 +85,18 @@ def rows(body: Body, end: float, tolerances: list[float], dopri: Solve | None, r
         "integration": integration(body.system, np.array([0.0, end]), 1e-14, restricted_velocity=body.velocity),
         "call": lambda: nh.flow(body.system, **call),
     }
-    taken = in_turns(runs, rounds)
-    found = [f"{statistics.median(seconds) * 1e6:.0f}" for seconds in taken.values()]
+    durations = in_turns(runs, rounds)
+    result = [f"{statistics.median(seconds) * 1e6:.0f}" for seconds in durations.values()]
     for ours in ("integration", "call"):
-        found += [f"{median_ratio(taken[ours], taken[f'heyoka {tol:g}']):.2f}" for tol in tolerances]
+        result += [f"{median_ratio(durations[ours], durations[f'heyoka {tol:g}']):.2f}" for tol in tolerances]
     if dopri is not None:
         refuse_unless_equal(state_of(body, dopri(end), body.is_rotation), wanted, 1e-6)
-        taken = in_turns({"dopri": lambda: dopri(end), "call": runs["call"]}, 5)
-        found += [
-            f"{statistics.median(taken['dopri']) * 1e3:.1f} ms",
-            f"{median_ratio(taken['dopri'], taken['call']):.0f}",
+        durations = in_turns({"dopri": lambda: dopri(end), "call": runs["call"]}, 5)
+        result += [
+            f"{statistics.median(durations['dopri']) * 1e3:.1f} ms",
+            f"{median_ratio(durations['dopri'], durations['call']):.0f}",
         ]
-    return [body.name, f"{end:g}", *found]
+    return [body.name, f"{end:g}", *result]
 
 
 def main() -> None:
@@ -106,18 +106,18 @@ def main() -> None:
     parser.add_argument("--tolerances", type=float, nargs="+", default=[2.2e-16, 1e-14])
     parser.add_argument("--ends", type=float, nargs="+", default=small([20.0, 100.0], [20.0]))
     parser.add_argument("--only", nargs="+", default=list(bodies())[: small(None, 2)])
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     if reason := missing("heyoka"):
         leave_out(reason)
-    tolerances, has_diffrax = given.tolerances, not missing("diffrax")
+    tolerances, has_diffrax = arguments.tolerances, not missing("diffrax")
     head = ["body", "T", *(f"heyoka {tol:g}" for tol in tolerances), "integration us", "call us"]
     head += [f"{ours} / heyoka {tol:g}" for ours in ("integration", "call") for tol in tolerances]
     head += ["Dopri8", "Dopri8 / call"] if has_diffrax else []
     print("|", " | ".join(head), "|\n|", " | ".join(["---", *["---:"] * (len(head) - 1)]), "|", flush=True)
-    for name in given.only:
+    for name in arguments.only:
         dopri = diffrax_dopri8(bodies()[name]) if has_diffrax else None
-        for end in given.ends:
-            print("|", " | ".join(rows(bodies()[name], end, tolerances, dopri, given.rounds)), "|", flush=True)
+        for end in arguments.ends:
+            print("|", " | ".join(rows(bodies()[name], end, tolerances, dopri, arguments.rounds)), "|", flush=True)
 
 
 if __name__ == "__main__":

@@ -83,15 +83,15 @@ def main() -> None:
     parser.add_argument("--body", choices=[*BODIES], action="append")
     parser.add_argument("--order", type=int, choices=[*STAGES], action="append")
     parser.add_argument("--time-step", type=float, action="append")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     print("| body | order | h | drift | of what is asked | slope | free | steps |\n|---|---|---|---|---|---|---|---|")
-    for name in given.body or BODIES:
-        asked, forced = BODIES[name]
-        for order in given.order or STAGES:
-            for h in given.time_step or small((0.01, 0.05, 0.2, 0.5), (0.05,)):
-                orbit, drift, slope = errors(forced, h, order, given.steps)
-                _, _, free = errors(forced.system, h, order, given.steps)
-                share = drift / (asked * STAGES[order] ** 0.5)
+    for name in arguments.body or BODIES:
+        limit, forced = BODIES[name]
+        for order in arguments.order or STAGES:
+            for h in arguments.time_step or small((0.01, 0.05, 0.2, 0.5), (0.05,)):
+                orbit, drift, slope = errors(forced, h, order, arguments.steps)
+                _, _, free = errors(forced.system, h, order, arguments.steps)
+                share = drift / (limit * STAGES[order] ** 0.5)
                 end = "" if orbit.outcome == nh.Outcome.successful else f", {orbit.outcome}"
                 reached = max(10 * len(orbit) - 10, 0)
                 row = f"{drift:.1e} | {share:.2f} | {slope:.1e} | {free:.1e} | {reached}{end}"

@@ -82,8 +82,8 @@ def drift(steps: int) -> None:
             orbit = nh.simulate(discrete, body_velocity=velocity, steps=steps, save_every=50, throw=False)
             errors = [np.abs(part - orbit.energy[0]).max() for part in np.array_split(orbit.energy, 10)]
             kinetic = orbit.energy - system.potential_energy(orbit.configuration)
-            shown = " ".join(f"{errors[j]:.2e}" for j in (0, 3, 6, 9))
-            done = f"{len(orbit) * 50 - 50} steps, tenths 1 4 7 10: {shown}; T to {kinetic.max():.3g}"
+            text = " ".join(f"{errors[j]:.2e}" for j in (0, 3, 6, 9))
+            done = f"{len(orbit) * 50 - 50} steps, tenths 1 4 7 10: {text}; T to {kinetic.max():.3g}"
             print(f"{name}, {scheme}, h = {h}: {done}")
 
 
@@ -93,34 +93,34 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=small(400_000, 400))
     parser.add_argument("--rounds", type=int, default=small(15, 1))
     parser.add_argument("--drift", action="store_true")
-    given = parser.parse_args()
-    if given.drift:
+    arguments = parser.parse_args()
+    if arguments.drift:
         drift(small(1_000_000, 1000))
         return
     for name, system in BODIES.items():
         for h in (0.1, 0.005):
-            routes = {kind: nh.discretize(each, h).route for kind, each in forced(system, given.steps).items()}
+            routes = {kind: nh.discretize(each, h).route for kind, each in forced(system, arguments.steps).items()}
             routes = {"free": nh.discretize(system, h).route} | routes
-            counts = {kind: 200 if route.compiled_route is None else given.steps for kind, route in routes.items()}
-            taken: dict[str, list[float]] = {kind: [] for kind in routes}
+            counts = {kind: 200 if route.compiled_route is None else arguments.steps for kind, route in routes.items()}
+            durations: dict[str, list[float]] = {kind: [] for kind in routes}
             ends = {}
-            for _ in range(given.rounds + 1):
+            for _ in range(arguments.rounds + 1):
                 for kind, route in routes.items():
-                    body, rows = route.body, tuple(np.empty((given.steps, width)) for width in route.sizes)
+                    body, rows = route.body, tuple(np.empty((arguments.steps, width)) for width in route.sizes)
                     start = route.encode(np.array([0.4, 0.9])), route.encode_poses(np.asarray(system.frame_pose))
                     _, state = kernels.runs_of(body).start(body, *start)
-                    begun, count = time.process_time(), counts.get(kind, given.steps)
+                    begun, count = time.process_time(), counts.get(kind, arguments.steps)
                     done = kernels.runs_of(body).advance(body, state, count, 1, rows)
-                    taken[kind].append((time.process_time() - begun) / count * 1e9)
+                    durations[kind].append((time.process_time() - begun) / count * 1e9)
                     if done != (count, 0):
                         raise RuntimeError(f"{name}, {kind}: {done}")
                     ends[kind] = [row[-1].copy() for row in rows]
-            rounding = given.steps * 2**-53  # of places that are summed, relative
+            rounding = arguments.steps * 2**-53  # of places that are summed, relative
             if not all(np.allclose(b, a, rounding, 1e-9) for a, b in zip(ends["free"], ends["zeros"], strict=True)):
                 raise RuntimeError("A table of zeros changes the motion.")
             texts = []
-            for kind, times in taken.items():
-                ratio = statistics.median(np.array(times[1:]) / np.array(taken["free"][1:]))
+            for kind, times in durations.items():
+                ratio = statistics.median(np.array(times[1:]) / np.array(durations["free"][1:]))
                 texts.append(f"{kind} {statistics.median(times[1:]):.1f} ({ratio:.2f})")
             print(f"{name}, h = {h}: ns per step " + ", ".join(texts))
 

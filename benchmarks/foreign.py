@@ -50,8 +50,8 @@ def meijaard() -> Iterator[Row]:
         yield Row(source, f"matrix {name}", "relative to its largest entry", "14 decimals", "Jacobian", (missed, 1e-12))
     missed = 0.0
     for speed, listed in published.EIGENVALUES.items():
-        found = published.spectrum(float(speed))
-        missed = max(missed, *(min(abs(complex(x) - y) for y in found) for x in listed))
+        result = published.spectrum(float(speed))
+        missed = max(missed, *(min(abs(complex(x) - y) for y in result) for x in listed))
     yield Row(source, "eigenvalues at 0 to 10 m/s", "table 2", "14 decimals", "Jacobian", (missed, 2e-12))
     speeds = nh.critical_values(_riding, (3.0, 8.0), samples=5)  # in one call
     for name, ours, theirs in zip(("weave", "capsize"), speeds, published.SPEEDS, strict=True):
@@ -180,9 +180,9 @@ def opty() -> Iterator[Row]:
     from peers.parking import by_opty, by_steps
 
     nodes, steps = small(501, 101), small(100, 40)
-    theirs, found = by_opty(nodes), by_steps(steps)
-    ours = 2.0 * float(found.cost)
-    assert found.converged, found.outcome
+    theirs, result = by_opty(nodes), by_steps(steps)
+    ours = 2.0 * float(result.cost)
+    assert result.converged, result.outcome
     rule, missed = f"{nodes} nodes; {steps} steps", abs(ours / theirs - 1)
     yield Row("opty, plot_parallel_park", "effort", rule, f"{theirs:.0f}", f"{ours:.0f}", (missed, small(5e-3, 0.1)))
 

@@ -134,32 +134,32 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=small(256, 8))
     parser.add_argument("--unroll", type=int, nargs="+", default=small([1, 4, 16], [1, 2]))
     parser.add_argument("--cpu", action="store_true")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     device = jax.devices()[0]
-    if device.platform == "cpu" and not (asked.cpu or SMOKE):
+    if device.platform == "cpu" and not (arguments.cpu or SMOKE):
         leave_out("no GPU here. With --cpu or --smoke it runs on the processor.")
     top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
     discrete = nh.discretize(top, 0.05)
     closed = discrete.route
     assert closed.is_scalar
-    velocities = np.random.default_rng(0).uniform(-1, 1, (asked.members, 2))
+    velocities = np.random.default_rng(0).uniform(-1, 1, (arguments.members, 2))
     momenta = float(closed.scale) * (velocities @ top.constrained_inertia).T
-    check(discrete, closed.body, momenta, float(closed.scale), asked.steps)
-    memory, flops = bandwidth(16 * asked.members), arithmetic(asked.members)
+    check(discrete, closed.body, momenta, float(closed.scale), arguments.steps)
+    memory, flops = bandwidth(16 * arguments.members), arithmetic(arguments.members)
     print(f"{device.device_kind}: {memory / 1e9:.0f} GB/s copying, {flops / 1e12:.2f} Tflop/s in 64 bits")
 
     def make() -> State:
         return first_states(closed.body, jnp.asarray(momenta))
 
     one = jax.jit(jax.vmap(functools.partial(step, closed.body))).lower(make()).compile().cost_analysis()
-    each = one["flops"] / asked.members
+    each = one["flops"] / arguments.members
     print(f"a step: {each:.0f} operations, {2 * 8 * len(make())} bytes read and written")
-    for unroll in asked.unroll:
-        print(line(closed.body, make, asked.members, asked.steps, unroll, memory, flops / each))
-    few = velocities[: asked.members // 10]
+    for unroll in arguments.unroll:
+        print(line(closed.body, make, arguments.members, arguments.steps, unroll, memory, flops / each))
+    few = velocities[: arguments.members // 10]
     sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
     for name, body in (("top", discrete), ("sleigh", sleigh)):
-        print(f"rollouts, {name}: {rollouts(functools.partial(started, body), few, asked.steps)}")
+        print(f"rollouts, {name}: {rollouts(functools.partial(started, body), few, arguments.steps)}")
     for name, number in (("snakeboard", "mass"), ("rattleback", "gravity")):
         example = getattr(nh.examples, name)()
         values = example.system.parameters[number] * (1 + 0.1 * few[:, :1])

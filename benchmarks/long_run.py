@@ -80,26 +80,27 @@ def main() -> None:
     parser.add_argument("--steps", type=float, default=small(1e7, 1e5))
     parser.add_argument("--thinned-steps", type=float, default=small(1e8, 1e5))
     parser.add_argument("--child", nargs="+")
-    given = parser.parse_args()
-    if given.child:
-        child(*given.child)
+    arguments = parser.parse_args()
+    if arguments.child:
+        child(*arguments.child)
         return
     with tempfile.TemporaryDirectory() as folder:
         for body in BODIES:
             part = Path(folder) / body
-            whole = begin(body, int(given.steps), KEPT_OF_LONG, part.with_suffix(".whole.zarr"))
-            kills = killed_and_resumed(body, int(given.steps), part.with_suffix(".killed.zarr"))
+            whole = begin(body, int(arguments.steps), KEPT_OF_LONG, part.with_suffix(".whole.zarr"))
+            kills = killed_and_resumed(body, int(arguments.steps), part.with_suffix(".killed.zarr"))
             again = nh.load_orbit(part.with_suffix(".killed.zarr"))
             equal = all(np.array_equal(getattr(whole, name), getattr(again, name)) for name in NAMES)
-            print(f"{body}: {given.steps:g} steps, {kills} kills, resumed == undisturbed: {equal}", flush=True)
+            print(f"{body}: {arguments.steps:g} steps, {kills} kills, resumed == undisturbed: {equal}", flush=True)
             assert equal
             started, store = time.perf_counter(), part.with_suffix(".thinned.zarr")
-            what = ["begin", body, str(int(given.thinned_steps)), str(KEPT_OF_THINNED), str(store)]
+            what = ["begin", body, str(int(arguments.thinned_steps)), str(KEPT_OF_THINNED), str(store)]
             subprocess.run([sys.executable, __file__, "--child", *what], check=True)  # noqa: S603
             size = sum(file.stat().st_size for file in store.rglob("*") if file.is_file())
             seconds = time.perf_counter() - started
             print(
-                f"{body}: {given.thinned_steps:g} steps, {seconds:.1f} s, store of {size / 2**20:.0f} MiB", flush=True
+                f"{body}: {arguments.thinned_steps:g} steps, {seconds:.1f} s, store of {size / 2**20:.0f} MiB",
+                flush=True,
             )
 
 

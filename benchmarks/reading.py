@@ -55,8 +55,8 @@ def check(orbit: nh.Orbit) -> None:
     slopes = np.transpose(np.subtract(ahead, back)) / 2e-4
     if not np.abs(orbit.tangent[0] - slopes).max() <= 1e-7:
         raise RuntimeError(f"tangent of {system}")
-    for name, (found, wanted) in quantities.items():
-        if not np.abs(found - wanted).max() <= 1e-12 * max(1.0, np.abs(wanted).max()):
+    for name, (result, wanted) in quantities.items():
+        if not np.abs(result - wanted).max() <= 1e-12 * max(1.0, np.abs(wanted).max()):
             raise RuntimeError(f"{name} of {system}")
 
 
@@ -67,8 +67,8 @@ def _after(discrete: nh.Discretization, momentum: np.ndarray) -> np.ndarray:
 def seconds(call: Any) -> tuple[float, Any]:
     """Return the time of a call, and its result."""
     begun = time.process_time()
-    found = call()
-    return time.process_time() - begun, found
+    result = call()
+    return time.process_time() - begun, result
 
 
 def stored(body: str, steps: int, rounds: int) -> float:
@@ -101,37 +101,37 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=small(200_000, 200))
     parser.add_argument("--rounds", type=int, default=small(15, 1))
     parser.add_argument("--stored", type=int, default=small(1_000_000, 200), help="steps of the run into a store")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     print("| reading | most | top: ns, of the run | sleigh: ns, of the run |\n| --- | ---: | ---: | ---: |")
-    taken: dict[str, dict[str, list[float]]] = {}
+    durations: dict[str, dict[str, list[float]]] = {}
     for body, (system, velocity) in BODIES.items():
         discrete = nh.discretize(system, STEP)
         check(nh.simulate(discrete, body_velocity=velocity, steps=100))
         names = [name for name in MOST if name != "position" or system.group.is_affine]
-        taken[body] = {name: [] for name in ("run", *names)}
-        for _ in range(given.rounds + 1):
-            run, orbit = seconds(lambda: nh.simulate(discrete, body_velocity=velocity, steps=given.steps))  # noqa: B023
-            taken[body]["run"].append(run)
+        durations[body] = {name: [] for name in ("run", *names)}
+        for _ in range(arguments.rounds + 1):
+            run, orbit = seconds(lambda: nh.simulate(discrete, body_velocity=velocity, steps=arguments.steps))  # noqa: B023
+            durations[body]["run"].append(run)
             for name in names:
                 first, array = seconds(lambda: getattr(orbit, name))  # noqa: B023
-                taken[body][name].append(first)
+                durations[body][name].append(first)
                 if getattr(orbit, name) is not array:
                     raise RuntimeError(f"{name} is read twice.")
     too_long = []
     for name in ("run", *MOST):
         texts = []
-        for body, columns in taken.items():
+        for body, columns in durations.items():
             if name not in columns:
                 texts.append("-")
                 continue
             times, runs = columns[name][1:], columns["run"][1:]
             ratio = statistics.median(first / run for first, run in zip(times, runs, strict=True))
-            texts.append(f"{statistics.median(times) / given.steps * 1e9:.1f}, {ratio:.2f}")
+            texts.append(f"{statistics.median(times) / arguments.steps * 1e9:.1f}, {ratio:.2f}")
             too_long += [f"{name} of the {body}: {ratio:.2f}"] if ratio > MOST.get(name, 1.0) else []
         print(f"| {name} | {MOST.get(name, 1.0)} | {' | '.join(texts)} |")
     for body in BODIES:
-        ratio = stored(body, given.stored, max(1, given.rounds // 3))
-        print(f"a store of {given.stored} steps of the {body}: {ratio:.2f} times zarr alone")
+        ratio = stored(body, arguments.stored, max(1, arguments.rounds // 3))
+        print(f"a store of {arguments.stored} steps of the {body}: {ratio:.2f} times zarr alone")
         too_long += [f"the store of the {body}: {ratio:.2f}"] if ratio > MOST_OF_ZARR else []
     if too_long and not SMOKE:
         raise SystemExit("takes too long: " + "; ".join(too_long))

@@ -211,11 +211,11 @@ def among_obstacles(rounds: int) -> None:
         counts.append(-1)  # of the first point, which is no iteration
         return solve(*arguments)
 
-    def asked() -> bool:
+    def is_over() -> bool:
         counts[-1] += 1
         return False
 
-    transcription.minimize, transcription.is_over = counted, asked
+    transcription.minimize, transcription.is_over = counted, is_over
     for steps in small((100, 200, 400, 800), (50,)):
         robot = nh.discretize(body, 10.0 / steps)
         for name, guess in {"straight": None, "path": [(0.0, 0.0), (1.6, 1.6), (3.0, 1.2), (5.0, 3.0)]}.items():
@@ -224,13 +224,11 @@ def among_obstacles(rounds: int) -> None:
                 counts.clear()
                 began, busy = time.perf_counter(), time.process_time()
                 obstacles = np.column_stack([x, y]), radii
-                found = nh.steer(robot, {}, there, steps=steps, obstacles=obstacles, bounds=(-1, 1), guess=guess)
+                way = nh.steer(robot, {}, there, steps=steps, obstacles=obstacles, bounds=(-1, 1), guess=guess)
                 times.append((time.process_time() - busy, time.perf_counter() - began))
             busy, clock = np.median(times[1:], axis=0)
-            print(f"{steps} steps, {name} guess: {found.outcome}, {busy:.2f} s of the processor ({clock:.2f} by clock)")
-            print(
-                f"  iterations {counts}, effort {found.cost:.4f}, missed {found.missed:.0e}, first {times[0][0]:.1f} s"
-            )
+            print(f"{steps} steps, {name} guess: {way.outcome}, {busy:.2f} s of the processor ({clock:.2f} by clock)")
+            print(f"  iterations {counts}, effort {way.cost:.4f}, missed {way.missed:.0e}, first {times[0][0]:.1f} s")
 
 
 def main() -> None:

@@ -61,8 +61,8 @@ def swept(name: str, members: int, steps: int = STEPS, reductions: Any = KEPT, *
 
 def reduced(batch: nh.Ensemble) -> dict[str, Any]:
     """Return what the sweep keeps of members."""
-    found = {name: entry[1] for kept in KEPT for name, entry in REDUCTIONS[kept].function(batch).items()}
-    return {**found, "outcome": batch.outcome}
+    result = {name: entry[1] for reduction in KEPT for name, entry in REDUCTIONS[reduction].function(batch).items()}
+    return {**result, "outcome": batch.outcome}
 
 
 def timed(call: Callable[[], Any]) -> tuple[float, float]:
@@ -92,9 +92,9 @@ def overhead(names: list[str], members: int, rounds: int, threads: int) -> None:
         for unit, at in (("clock", 0), ("CPU", 1)):
             ours, theirs = ([pair[side][at] for pair in pairs] for side in (0, 1))
             ratios = sorted(one / other for one, other in zip(ours, theirs, strict=True))
-            told = f"median of {rounds} pairs {statistics.median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
+            report = f"median of {rounds} pairs {statistics.median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
             least = f"sweep {min(ours):7.2f} s   bare {min(theirs):7.2f} s   ratio {min(ours) / min(theirs):.2f}"
-            print(f"{name:7} {unit:6} {least}   {told}")
+            print(f"{name:7} {unit:6} {least}   {report}")
         print(f"{name:7} not counted: the first sweep, of 1000 members, with imports and compilation {first:.2f} s")
 
 
@@ -109,15 +109,15 @@ def scaling(members: int, rounds: int) -> None:
             "2 processes": {"scheduler": "processes", "workers": 2},
             "2 workers over TCP": {"scheduler": address},
         }
-        found: dict[str, list[float]] = {way: [] for way in ways}
+        result: dict[str, list[float]] = {way: [] for way in ways}
         for turn in range(rounds + 1):
             for way, options in ways.items():
                 took = timed(lambda options=options: swept("top", members, block=block, **options))[0]
                 if turn:
-                    found[way].append(took)
+                    result[way].append(took)
     print(f"\ntops, {members:,} members x {STEPS} steps in 32 blocks, load {os.getloadavg()[0]:.1f}, {rounds} rounds")
-    base = found["1 thread"]
-    for way, times in found.items():
+    base = result["1 thread"]
+    for way, times in result.items():
         gain = statistics.median(one / took for one, took in zip(base, times, strict=True))
         rate = members / statistics.median(times)
         print(f"{way:20} {statistics.median(times):7.2f} s {rate:10,.0f} members/s  {gain:.2f} times one thread")
@@ -127,8 +127,8 @@ def store(members: int) -> None:
     """Print bytes of a member by what is kept of it, the values of the design included."""
     print(f"\nbytes of a member in the store, {members:,} members")
     for name in CASES:
-        for kept in ("final_state", "energy_drift", "limit_angle"):
-            print(f"{name:7} {kept:14} {swept(name, members, 100, [kept]):6.0f}")
+        for reduction in ("final_state", "energy_drift", "limit_angle"):
+            print(f"{name:7} {reduction:14} {swept(name, members, 100, [reduction]):6.0f}")
 
 
 def nothing(block: nh.MemberBlock) -> Any:
@@ -228,18 +228,18 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="of overhead")
     parser.add_argument("--blocks", type=int, default=small(10_000, 4), help="of tiny")
     parser.add_argument("--child", nargs=4)
-    given = parser.parse_args()
-    if given.child:
-        child(given.child[0], given.child[1], int(given.child[2]), int(given.child[3]))
+    arguments = parser.parse_args()
+    if arguments.child:
+        child(arguments.child[0], arguments.child[1], int(arguments.child[2]), int(arguments.child[3]))
         return
     calls: dict[str, Callable[[], None]] = {
-        "overhead": lambda: overhead(given.cases, given.members, given.rounds, given.threads),
-        "scaling": lambda: scaling(given.members // 2, given.rounds),
+        "overhead": lambda: overhead(arguments.cases, arguments.members, arguments.rounds, arguments.threads),
+        "scaling": lambda: scaling(arguments.members // 2, arguments.rounds),
         "store": lambda: store(small(1 << 16, 64)),
-        "tiny": lambda: tiny(given.blocks),
-        "memory": lambda: memory(given.cases, small(10_000_000, 200), 10),
+        "tiny": lambda: tiny(arguments.blocks),
+        "memory": lambda: memory(arguments.cases, small(10_000_000, 200), 10),
     }
-    for part in given.parts:
+    for part in arguments.parts:
         calls[part]()
 
 

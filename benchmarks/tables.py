@@ -38,14 +38,14 @@ def main() -> None:
     parser.add_argument("--tables", nargs="+", choices=TABLES, default=list(TABLES))
     parser.add_argument("--skip", nargs="+", default=(), help="peers to leave out")
     parser.add_argument("--rounds", type=int, default=small(9, 1), help="repetitions, of which medians are taken")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     warnings.simplefilter("ignore")  # solvers complain at tolerances near rounding; their errors are measured
     print(machine(), end="\n\n", flush=True)
-    skip = set(asked.skip)
-    for table in asked.tables:
+    skip = set(arguments.skip)
+    for table in arguments.tables:
         room, title = TABLES[table]
         for problem in PROBLEMS:
-            rows, left_out = room.rows(problem, skip, asked.rounds)
+            rows, left_out = room.rows(problem, skip, arguments.rounds)
             print(markdown(f"{problem.name}: {title(problem)}", room.HEADER, rows, left_out), flush=True)
 
 

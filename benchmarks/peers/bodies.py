@@ -53,7 +53,7 @@ def bodies() -> dict[str, Body]:
     rows = np.array([[1, 0, 0, 0.5, 0, 0], [0, 1, 0, 0, 0, -0.25], [0, 0, 0.5, 1, 0, 0], [0, 0, 0, 0, 1, 0.75]])
     inertia = np.diag([2, 3, 2.5, 1, 1.5, 1.25]) + (np.eye(6, k=2) + np.eye(6, k=-2)) / 4
     J = np.array([[1.0, 0.25, 0.5], [0.25, 2.0, 0.125], [0.5, 0.125, 4.0]])
-    found = [
+    result = [
         Body(
             "top on SO(3)",
             nh.SuslovTop([[1.5, 0.25, 0.5], [0.25, 1, -0.375], [0.5, -0.375, 1]]),
@@ -83,7 +83,7 @@ def bodies() -> dict[str, Body]:
             np.array([0.5, 0.25]),
         ),
     ]
-    return {body.name: body for body in found}
+    return {body.name: body for body in result}
 
 
 def exact(x: Any) -> np.ndarray:
@@ -126,8 +126,8 @@ def _is(x: Any, whole: int) -> bool:
 
 
 def _sum(*terms: Any) -> Any:
-    found = [x for x in terms if not _is(x, 0)]
-    return functools.reduce(lambda a, b: a + b, found) if found else 0
+    result = [x for x in terms if not _is(x, 0)]
+    return functools.reduce(lambda a, b: a + b, result) if result else 0
 
 
 def _product(x: Any, y: Any) -> Any:
@@ -200,10 +200,10 @@ def _veselova(body: Body, w: Sequence[Any], gamma: Sequence[Any], number: Number
     inertia = [Fraction(x) for x in np.diag(body.system.inertia_operator)]
     assert np.count_nonzero(body.system.inertia_operator) == 3
     free = [number((inertia[b] - inertia[c]) / inertia[a]) * (w[b] * w[c]) for a, b, c in _CYCLE]
-    seen = [number(1 / moment) * x for moment, x in zip(inertia, gamma, strict=True)]
-    multiplier = _dot(gamma, free) / _dot(gamma, seen)
+    normal = [number(1 / moment) * x for moment, x in zip(inertia, gamma, strict=True)]
+    multiplier = _dot(gamma, free) / _dot(gamma, normal)
     vertical = [gamma[b] * w[c] - gamma[c] * w[b] for _, b, c in _CYCLE]
-    return [*(x - multiplier * y for x, y in zip(free, seen, strict=True)), *vertical]
+    return [*(x - multiplier * y for x, y in zip(free, normal, strict=True)), *vertical]
 
 
 def first_of(body: Body, turned: bool = False) -> np.ndarray:

@@ -77,18 +77,18 @@ def exudyn(problem: Problem) -> Scheme:
 
 def schemes(problem: Problem, skip: set[str]) -> tuple[list[Scheme], list[str]]:
     """Return all schemes for a body, the library first, and lines about those left out."""
-    found, left_out = [library(problem, LONG), library(problem, STEPS)], []
-    found += [from_function(problem, name, run) for name, run in SCHEMES[problem.name].items()]
+    result, left_out = [library(problem, LONG), library(problem, STEPS)], []
+    result += [from_function(problem, name, run) for name, run in SCHEMES[problem.name].items()]
     if problem.name == "Suslov top":
         name = "midpoint retraction, written for one body and compiled by numba"
-        found.append(from_function(problem, name, compiled_midpoint, LONG))
-        return found, left_out
+        result.append(from_function(problem, name, compiled_midpoint, LONG))
+        return result, left_out
     reason = "skipped on request" if "exudyn" in skip else missing("exudyn")
     if reason:
         left_out.append(f"Exudyn: {reason}.")
     else:
-        found.append(exudyn(problem))
-    return found, left_out
+        result.append(exudyn(problem))
+    return result, left_out
 
 
 def check_same_map(problem: Problem) -> None:
@@ -119,8 +119,8 @@ def rows(problem: Problem, skip: set[str], rounds: int) -> tuple[list[tuple], li
     table = []
     for scheme, (missed, energy, order) in zip(compared, measured, strict=True):
         each = per_step[scheme.name]
-        taken = statistics.median(each)
+        durations = statistics.median(each)
         ratios = [f"{median_ratio(each, per_step[ours.name]):.3g}" for ours in compared[:2]]
-        row = (scheme.name, f"{1e6 * taken:.3g}", f"{1 / taken:.2g}", *ratios, f"{missed:.2g}", f"{energy:.0e}")
+        row = (scheme.name, f"{1e6 * durations:.3g}", f"{1 / durations:.2g}", *ratios, f"{missed:.2g}", f"{energy:.0e}")
         table.append((*row, f"{order:.2f}"))
     return table, left_out

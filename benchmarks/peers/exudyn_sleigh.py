@@ -26,13 +26,13 @@ def model(problem: Problem, stored: bool) -> tuple[Any, Any, int]:
     first = -1
     if stored:
         kinds = (exudyn.OutputVariableType.Coordinates, exudyn.OutputVariableType.Coordinates_t)
-        made = [
+        bodies = [
             system.AddSensor(
                 items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind)
             )
             for kind in kinds
         ]
-        first = made[0]
+        first = bodies[0]
     system.Assemble()
     return exudyn, system, first
 

@@ -48,8 +48,8 @@ def tractor() -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
         axle.set_vel(space, speed * frame.x)
         bodies.append(RigidBody(f"B{len(bodies)}", axle, frame, mass, (inertia(frame, 0, 0, moment), axle)))
     # the speed along is x' cos + y' sin
-    found = _accelerations(space, q, [along, turning], rates, bodies, [], (0, 2))
-    return lambda q, v: found(q, np.array([v[0] * np.cos(q[2]) + v[1] * np.sin(q[2]), 0.0, v[2], 0.0]))
+    result = _accelerations(space, q, [along, turning], rates, bodies, [], (0, 2))
+    return lambda q, v: result(q, np.array([v[0] * np.cos(q[2]) + v[1] * np.sin(q[2]), 0.0, v[2], 0.0]))
 
 
 def _accelerations(

@@ -104,10 +104,10 @@ def reference(problem: Problem, end: float, step: float = 0.125, order: int = 34
     return problem.state(z)
 
 
-def error(problem: Problem, found: State, wanted: State) -> float:
+def error(problem: Problem, result: State, wanted: State) -> float:
     """Return the largest difference in body velocity and pose."""
-    assert found.pose.shape == wanted.pose.shape, problem.name
-    return float(max(np.abs(found.velocity - wanted.velocity).max(), np.abs(found.pose - wanted.pose).max()))
+    assert result.pose.shape == wanted.pose.shape, problem.name
+    return float(max(np.abs(result.velocity - wanted.velocity).max(), np.abs(result.pose - wanted.pose).max()))
 
 
 def energy_error(problem: Problem, velocities: np.ndarray) -> float:

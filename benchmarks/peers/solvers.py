@@ -71,10 +71,10 @@ def scipy_dop853(problem: Problem) -> Solve:
     rate, first = rates(problem), start(problem)
 
     def solve(tolerance: float) -> State:
-        found = solve_ivp(
+        result = solve_ivp(
             lambda _t, z: rate(z.tolist()), (0, problem.end), first, method="DOP853", rtol=tolerance, atol=tolerance
         )
-        return decoded(found.y[:, -1])
+        return decoded(result.y[:, -1])
 
     return solve
 
@@ -99,8 +99,8 @@ def diffrax_dopri8(problem: Problem) -> Solve:
 
     def solve(tolerance: float) -> State:
         with jax.enable_x64(True):
-            found = np.asarray(solution(jnp.asarray(start(problem)), jnp.asarray(tolerance)))
-        return decoded(found)
+            result = np.asarray(solution(jnp.asarray(start(problem)), jnp.asarray(tolerance)))
+        return decoded(result)
 
     return solve
 

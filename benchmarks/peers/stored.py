@@ -41,11 +41,11 @@ def by_scipy(problem: Problem) -> Callable[[], State]:
     rate, grid = rates(problem), np.linspace(0, problem.end, STATES + 1)
 
     def run() -> State:
-        found = solve_ivp(
+        result = solve_ivp(
             lambda _t, z: rate(z.tolist()), (0, problem.end), start(problem),
             method="DOP853", t_eval=grid, rtol=TOLERANCE, atol=TOLERANCE,
         )  # fmt: skip
-        return decoded(found.y[:, -1])
+        return decoded(result.y[:, -1])
 
     return run
 
@@ -71,9 +71,9 @@ def rows(problem: Problem, skip: set[str], rounds: int) -> tuple[list[tuple], li
     return [
         (
             name,
-            f"{statistics.median(taken) / STATES * 1e9:.3g}",
-            f"{median_ratio(taken, times[OURS]):.3g}",
+            f"{statistics.median(durations) / STATES * 1e9:.3g}",
+            f"{median_ratio(durations, times[OURS]):.3g}",
             f"{errors[name]:.1e}",
         )
-        for name, taken in times.items()
+        for name, durations in times.items()
     ], left_out

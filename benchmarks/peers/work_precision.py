@@ -27,7 +27,7 @@ class Method(NamedTuple):
 
 def library_methods(problem: Problem) -> tuple[list[Method], list[str]]:
     """Return the orders of the map that this version has, and the flow."""
-    found, left_out = [], []
+    result, left_out = [], []
     for order in (2, 4, 6, 8):
         try:
             nh.discretize(problem.system, 0.1, order=order)
@@ -39,22 +39,22 @@ def library_methods(problem: Problem) -> tuple[list[Method], list[str]]:
         def solve(n: float, order: int = order) -> State:
             return last(by_library(problem, problem.end / n, round(n), save_every=round(n), order=order))
 
-        found.append(Method(f"nonholo, map of order {order}", solve, steps))
+        result.append(Method(f"nonholo, map of order {order}", solve, steps))
     times = (0.0, problem.end)
 
-    given, reached = {"body_velocity": problem.velocity, "times": times}, [t for t in TOLERANCES if t >= 1e-14]
+    arguments, reached = {"body_velocity": problem.velocity, "times": times}, [t for t in TOLERANCES if t >= 1e-14]
     for name, method in (("nonholo flow", None), ("nonholo flow, diffrax", "diffrax")):
 
         def flow(tolerance: float, method: str | None = method) -> State:
-            return last(nh.flow(problem.system, **given, rtol=tolerance, atol=tolerance, method=method))
+            return last(nh.flow(problem.system, **arguments, rtol=tolerance, atol=tolerance, method=method))
 
-        found.append(Method(name, flow, reached))
-    return found, left_out
+        result.append(Method(name, flow, reached))
+    return result, left_out
 
 
 def solver_methods(problem: Problem, skip: set[str]) -> tuple[list[Method], list[str]]:
     """Return the solvers that are installed and asked for."""
-    found, left_out = [], []
+    result, left_out = [], []
     for name, (make, modules) in SOLVERS.items():
         if "PyDy" in name and problem.name == "Suslov top":
             continue
@@ -62,11 +62,11 @@ def solver_methods(problem: Problem, skip: set[str]) -> tuple[list[Method], list
         if reason:
             left_out.append(f"{name}: {reason}.")
             continue
-        made: list[Callable[[float], State]] = []
-        preparation = seconds(lambda make=make, made=made: made.append(make(problem)))
+        solvers: list[Callable[[float], State]] = []
+        preparation = seconds(lambda make=make, solvers=solvers: solvers.append(make(problem)))
         usable = [t for t in TOLERANCES if t >= 1e-13 or "PyDy" not in name]  # odeint refuses less
-        found.append(Method(name, made[0], usable, preparation))
-    return found, left_out
+        result.append(Method(name, solvers[0], usable, preparation))
+    return result, left_out
 
 
 def measure(problem: Problem, method: Method, wanted: State, rounds: int) -> tuple[list[tuple[float, float]], float]:
