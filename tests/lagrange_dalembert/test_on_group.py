@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from comparisons import assert_near
 from refusals import refusals
+from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, GroupOrbit, mass_tensor_lagrangian
@@ -404,6 +405,25 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
     assert np.array_equal(np.ma.getdata(panels[0].collections[0].get_offsets()), orbit.configuration[:, :2, 2])
     titles = ["Reference point", "Body velocity", "Energy error", "Residual of the constraint"]
     assert [axes.get_title(loc="left") for axes in panels] == titles
+
+
+@functools.cache
+def flow() -> GroupOrbit:
+    """Return the continuous motion of the mixed system at times 0, 1, 2."""
+    return nh.flow(MIXED, **START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
+
+
+def rates(_: float, z: np.ndarray) -> np.ndarray:
+    """Return the rates of (theta, x, y, omega, v1, v2), written out by hand."""
+    theta, x, y, omega, v1, v2 = z
+    inertia, p = BODY.inertia_operator, BODY.inertia_operator @ z[3:]
+    torque = np.array([p[1] * v2 - p[2] * v1, omega * p[2], -omega * p[1]])
+    dx, dy = np.cos(theta) * v1 - np.sin(theta) * v2, np.sin(theta) * v1 + np.cos(theta) * v2
+    angle, turning = 0.7 * np.sin(x) + 0.4 * np.cos(1.3 * y), 0.7 * np.cos(x) * dx - 0.52 * np.sin(1.3 * y) * dy
+    a, da = np.array([0, -np.sin(angle), np.cos(angle)]), -turning * np.array([0, np.cos(angle), np.sin(angle)])
+    matrix = np.block([[inertia, -a[:, None]], [a[None], np.zeros((1, 1))]])
+    solution = np.linalg.solve(matrix, np.append(torque, -da @ z[3:]))
+    return np.concatenate([[omega, dx, dy], solution[:3]])
 
 
 @pytest.mark.profile("routes", instead="test_the_flow_is_the_published_solution")

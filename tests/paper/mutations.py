@@ -162,7 +162,7 @@ def _apply(node: ast.AST, holder: ast.AST) -> str:
         node.left = ast.UnaryOp(ast.USub(), node.left)
     else:
         node.op = FLIPPED[type(node.op)]()
-    return f"{before} -> {ast.unparse(text)}"
+    return f"{before} -> {ast.unparse(place)}"
 
 
 def _depth(finding: Finding, target: CodeType) -> int | None:

@@ -143,7 +143,7 @@ class GridDesign(sections.Section):
     values: Values[Annotated[Any, sections.checked_by(along)]]
 
     def with_members(self) -> Self:
-        """Return the design with the counts of its ranges multiplied by one factor, to have so many members."""
+        """Return the design with the counts of its ranges multiplied by one factor, for this number of members."""
         if self.members is None:
             return self
         values = self.values.model_dump()
