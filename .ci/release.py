@@ -17,6 +17,7 @@ _VERSIONS = {
     "CITATION.cff": r"^version: (.*)$",
     "recipe/recipe.yaml": r'^  version: "(.*)"$',
     "CHANGELOG.md": r"^## \[(.*)\]",
+    "docs/index.md": r"nonholo-([0-9.]*)-py3-none",
 }
 
 
@@ -47,8 +48,8 @@ def obstacles() -> list[str]:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="build nothing")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     if lines := obstacles():
         sys.exit("\n".join([*lines, "No release is built."]))
-    for command in () if given.check else (["build"], ["twine", "check", "--strict", "dist/*"]):
+    for command in () if arguments.check else (["build"], ["twine", "check", "--strict", "dist/*"]):
         subprocess.run([sys.executable, "-m", *command], cwd=ROOT, check=True)  # noqa: S603

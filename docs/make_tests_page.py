@@ -68,7 +68,7 @@ _TEXT = """\
 one process. What is long by nature belongs to a profile. A test is moved there by
 `@pytest.mark.profile(NAME, keep=PATTERNS)`; cases whose id matches a pattern stay (with `cases=`, go).
 `--profile routes,faults` runs two of them, `--profile all` every marked test; `.ci/run` the default run, and
-of the profiles whose rooms a change touches every fourth case of each test, others with each commit;
+of the profiles whose rooms a change touches every eighth case of each test, others with each commit;
 `.ci/run --all` every case of all but the soaks `long` and `fuzz`. Tests that draw their
 cases run in "problems" too, with four times the examples.
 

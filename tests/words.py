@@ -92,7 +92,14 @@ def lengths(root: Path = ROOT) -> dict[str, int]:
     return {name: len(path.read_text("utf-8").split()) for name, path in pages.items() if not GENERATED.match(name)}
 
 
+def too_long(lengths: dict[str, int]) -> list[str]:
+    """Return a complaint if the handwritten pages have more words than they may."""
+    longest = ", ".join(sorted(lengths, key=lengths.__getitem__)[:-4:-1])
+    message = f"{sum(lengths.values())} words in pages of docs, at most {MOST}: shorten one, the longest are {longest}"
+    return [message] if sum(lengths.values()) > MOST else []
+
+
 if __name__ == "__main__":
-    print("\n".join(lines := complaints()))  # noqa: T201
+    print("\n".join(lines := complaints() + too_long(lengths())))  # noqa: T201
     print(f"{sum(lengths().values())} words in the handwritten pages of docs, of at most {MOST}")  # noqa: T201
     sys.exit(bool(lines))

@@ -185,6 +185,8 @@ def column_names(group: AbstractMatrixGroup) -> list[str]:
 def compact_names(group: AbstractMatrixGroup) -> list[str]:
     """Return the names of the numbers of a compact pose; none for products, whose factors may share them.
 
+    Nor for a custom group whose pose is not the matrix row by row.
+
     Example:
         >>> compact_names(nh.SE(2)), compact_names(nh.SO(3))
         (['cos', 'sin', 'x', 'y'], ['qw', 'qx', 'qy', 'qz'])
@@ -194,7 +196,8 @@ def compact_names(group: AbstractMatrixGroup) -> list[str]:
     position, turn = layout(group)
     if turn == HEADING:
         return ["cos", "sin", *position]
-    return [*(_entries(3) if turn == QUATERNION and position else turn), *position]
+    names = [*(_entries(3) if turn == QUATERNION and position else turn), *position]
+    return names if len(names) == group.pose_size else []
 
 
 def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> Float[np.ndarray, "R c"]:

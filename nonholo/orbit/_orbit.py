@@ -355,9 +355,10 @@ class Orbit(AbstractOrbit):
 
     @memo
     def multipliers(self) -> Float[np.ndarray, "L s"]:
-        """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
+        """Impulses of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
 
-        In steps with impacts they are NaN.
+        Row j is the impulse at the end of the step from state j; divided by the time step it is the continuous force at
+        state j + 1 to second order. In steps with impacts it is NaN.
         """
         rows = self.motion.multipliers(self)
         if not self.is_discrete or not self.has_impacts.any():

@@ -17,7 +17,7 @@ def test_pages_are_up_to_date() -> None:
 
 
 def test_every_public_name_is_described_once() -> None:
-    """Each public name has one entry on one page, and stands in one table."""
+    """Each public name has one entry on one page and one row: else run `python docs/make_api_pages.py`."""
     text = "".join(path.read_text("utf-8") for path in PAGES.iterdir())
     entries = Counter(re.findall(r"^\.\. auto(?:class|exception|function|data):: nonholo\.(\S+)$", text, re.MULTILINE))
     rows = Counter(re.findall(r"^   nonholo\.(\S+)$", text, re.MULTILINE))

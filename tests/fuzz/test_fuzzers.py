@@ -147,7 +147,7 @@ def test_every_public_name_is_called(calls: dict[str, Call]) -> None:
     """A new public name needs a call, or a reason why there is none."""
     called = {name.split(" [")[0] for name in calls}
     missing = [name for name in public_names() if name not in called | NOT_CALLED.keys() and not is_picture(name)]
-    assert not missing
+    assert not missing, f"add a call of {missing} to a file tests/fuzz/calls_*.py, or a reason to NOT_CALLED"
     assert not NOT_CALLED.keys() & called
     assert NOT_CALLED.keys() <= set(public_names())
 

@@ -88,7 +88,7 @@ def test_a_card_is_true_and_drawn(name: str) -> None:
 
 
 def test_the_page_is_up_to_date() -> None:
-    """The page in the repository is the one that the script writes, and every picture on it is there."""
+    """The page is the one that `python docs/make_gallery.py` writes, and every picture on it is there."""
     assert GALLERY.PAGE.read_text("utf-8") == GALLERY.page()
     assert [name for name in (*CARDS, *GALLERY.STUDIES) if not (GALLERY.PICTURES / f"{name}.png").exists()] == []
 

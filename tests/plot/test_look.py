@@ -86,7 +86,7 @@ def _contrast(color: Any, paper: Any) -> float:
 
 
 def test_every_picture_takes_the_same_keywords() -> None:
-    """All functions that draw take `Look`, and refuse what it does not have as functions do."""
+    """All functions that draw take `Look`, refuse what it does not have, and have an entry in `PICTURES`."""
     functions = {name for name in nh.plot.__all__ if inspect.isfunction(getattr(nh.plot, name))}
     assert functions - {"overview", "animate", "sweep_map", "comparison", "convergence", "curvature"} == set(PICTURES)
     for name in functions:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
+from nonholo.io.datasets import compact_names
 
 pytestmark = pytest.mark.profile("paper", instead="test_the_blocks_run")
 
@@ -32,6 +33,12 @@ def test_defaults_and_what_is_kept(page: dict[str, Any]) -> None:
     assert np.ptp(page["orbit"].momentum[:, 0]) > 0.1  # it does move
     assert page["report"].passed
     assert page["report"]["energy"].status == "reported"
+
+
+def test_a_pose_that_is_no_matrix_has_no_names(page: dict[str, Any]) -> None:
+    """Sweeps label the numbers of a compact pose only where they know them."""
+    assert len(compact_names(page["group"])) == 9
+    assert compact_names(page["heisenberg"]) == []
 
 
 def test_both_groups_are_the_same(page: dict[str, Any]) -> None:
