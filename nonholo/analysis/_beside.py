@@ -115,7 +115,7 @@ def _refuse(where: str, system: Any) -> None:
     refuse_slip(where, system)
     if system.forces is not None and system.forces.table is not None:
         got, remedy = "one force for each step", "Linearize it without the table."
-        raise error(where, "have forces that stay", got, remedy)
+        raise error(where, "have forces that do not depend on time", got, remedy)
 
 
 def _flowing(system: Any) -> Move:

@@ -434,7 +434,7 @@ def critical_values(
     where, remedy = "critical_values(interval=...)", "Pass the least and the largest value."
     low, high = array(where, interval, (2,), remedy)
     if not low < high:
-        raise error(where, "rise", shown(interval), remedy)
+        raise error(where, "have its lower end first", shown(interval), remedy)
     places = np.linspace(low, high, 1 + count("critical_values(samples=...)", samples, "Pass a positive number."))
     pairs = [_rates(linearization, value) for value in places]
     size = max(len(values) for values, _ in pairs)
@@ -542,7 +542,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         remedy = "Differentiate `nh.rollout` by JAX."
         raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
     if not orbit.has_every_step:
-        raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
+        raise error(_WHERE, "have all states of the run", f"{len(orbit)} of them", "Run with save_every=1.")
     if _has_closed_derivatives(discrete):
         return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
     return _motions(_WHERE).along(orbit)

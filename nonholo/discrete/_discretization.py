@@ -266,7 +266,7 @@ class Discretization(Scheme, AbstractMotion):
         """Return the states one step after others, whose displacements count, instead of those that were saved."""
         if before.branch != "principal":
             got = f"branch {before.branch!r} and {len(before) + 1} states with others between, which are not known"
-            raise error("Orbit.multipliers", "have every step, or the principal branch", got, "Run with save_every=1.")
+            raise error("Orbit.multipliers", "have all states, or the principal branch", got, "Run with save_every=1.")
         if self.forces is not None:
             return self.after_parts(before, np.ones(len(before)))
         return dataclasses.replace(after, cayley=self.route.next_charts(before))

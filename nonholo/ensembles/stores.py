@@ -108,7 +108,8 @@ def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], membe
         _check_two(task, block_at(0, min(2, members)), outputs)
         return outputs
     got = f"{type(first_failure).__name__} for the first: {str(first_failure).rstrip('.')}"
-    raise error("sweep(task=...)", "run for one of the members tried", got, "Mend the design.") from first_failure
+    requirement, remedy = "run for at least one tested member", "Correct the design, or the task."
+    raise error("sweep(task=...)", requirement, got, remedy) from first_failure
 
 
 def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> None:

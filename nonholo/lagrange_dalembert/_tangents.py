@@ -91,7 +91,7 @@ def changes(orbit: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     if orbit.has_impacts.any():
         raise error(where, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if orbit.is_discrete and not orbit.has_every_step:
-        raise error(where, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
+        raise error(where, "have all states of the run", f"{len(orbit)} of them", "Run with save_every=1.")
     if not len(orbit):
         raise error(where, "have a state", "none", "Run longer.")
     x, v = places(system, orbit.configuration, time), orbit.body_velocity

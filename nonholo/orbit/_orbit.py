@@ -97,7 +97,7 @@ class AbstractMotion(Keeper, abc.ABC):
         """Return what is reached from states after parts of the steps that begin there; refused where none do."""
         del fractions
         got = f"{len(states)} states of a motion that is no map"
-        raise error("Orbit.work", "have every step", got, "Take all states.")
+        raise error("Orbit.work", "have all states of the run", got, "Take all states.")
 
     @abc.abstractmethod
     def full_momentum(self, states: "Orbit") -> Float[np.ndarray, "K dim"]:

@@ -83,7 +83,8 @@ class Impact:
     def __post_init__(self) -> None:
         bounce = number("Impact(restitution=...)", self.restitution)
         if not 0 <= bounce <= 1:
-            raise error("Impact(restitution=...)", "be from 0 to 1", f"{bounce}", "1 keeps the energy, 0 the least.")
+            remedy = "1 conserves the energy, 0 loses most of it."
+            raise error("Impact(restitution=...)", "lie between 0 and 1", f"{bounce}", remedy)
         assign(self, restitution=float(bounce))
         if self.normal is None or callable(self.normal):
             if self.point is not None:

@@ -315,7 +315,7 @@ test_bad_arguments_are_refused = refusals(
     ({"measurements": {"t": np.zeros(3)}}, "after the one before"),
     ({"measurements": {"t": np.arange(3.0), "z": np.zeros(3)}}, "columns of a motion in"),
     ({"measurements": {"t": np.array([0.0, 0.05, 0.13]), "omega": np.ones(3)}}, "whole number of time steps"),
-    ({"measurements": {"t": np.array([0.0, 0.05, 0.1]), "omega": np.ones(3)}}, "more than the unknowns"),
+    ({"measurements": {"t": np.array([0.0, 0.05, 0.1]), "omega": np.ones(3)}}, "more numbers than there are unknowns"),
     ({"measurements": []}, "at least one trial"),
     ({"measurements": 5}, "be tables of numbers"),
     ({"time_step": -1.0}, "be positive"),

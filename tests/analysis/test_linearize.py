@@ -231,7 +231,7 @@ test_refusals = pytest.mark.profile("routes", cases=["steady motion", "must be t
         (LATER, {}, "that of a steady motion"),
         (DISK, rolling(0.0, 0.0, 1.0) | {"body_velocity": np.ones(5)}, "satisfy the constraint"),
         (DISK, {}, r"`linearize\(configuration=...\)` must be given"),
-        (nh.Forced(TOP, force=np.zeros((3, 3))), {}, "must have forces that stay"),
+        (nh.Forced(TOP, force=np.zeros((3, 3))), {}, "must have forces that do not depend on time"),
         (DISK.forced(None, np.zeros((3, 5))), rolling(0.0, 0.0, 1.0), "must have forces at times"),
         (WIDE, {}, "at most 100000 components"),
         (nh.examples.particle(), {}, "must be a system or its map"),
@@ -265,7 +265,7 @@ def test_critical_values_of_a_disk_and_a_bead() -> None:
 test_bad_arguments_of_critical_values_are_refused = refusals(
     (lambda: nh.critical_values("abc", (0.0, 1.0)), r"critical_values\(linearization=...\)` must be a function"),
     (lambda: nh.critical_values(lambda spin: spin, (0.0, 1.0)), "return a Linearization"),
-    (lambda: nh.critical_values(lambda spin: spin, (1.0, 1.0)), "must rise"),
+    (lambda: nh.critical_values(lambda spin: spin, (1.0, 1.0)), "must have its lower end first"),
 )
 
 

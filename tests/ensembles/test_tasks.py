@@ -166,9 +166,9 @@ test_designs_without_a_meaning_are_refused = refusals(
     ({}, {"momentum_0": [1.0], "body_velocity_1": [1.0]}, "vary components of one start"),
     (START, {"restricted_velocity[2]": [1.0]}, "existing components. Got .* of a start with 2"),
     ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
-    (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
-    (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),
-    ({}, {"momentum": [1.0, 2.0]}, "run for one of the members tried.*must have shape"),
+    (START, {"mass": [-1.0, 0.0]}, "run for at least one tested member. Got ValueError.*must be positive"),
+    (START, {"mass": [[1.0, 2.0]]}, "run for at least one tested member.*must have shape"),
+    ({}, {"momentum": [1.0, 2.0]}, "run for at least one tested member.*must have shape"),
     ask=lambda options, axes: nh.sweep(_task(**options), nh.Grid(axes), Path("run.zarr")),
 )
 

@@ -64,7 +64,7 @@ def test_a_gait_is_drawn_within_its_range() -> None:
 test_what_cannot_be_drawn_is_refused = refusals(
     ({"component": "v3"}, "component=...\\)` must be one of"),
     ({"along": ("psi", "psi")}, "name two shape variables"),
-    ({"bounds": ((1, -1), (-1, 1))}, "ascend"),
+    ({"bounds": ((1, -1), (-1, 1))}, "have its lower end first"),
     ({"connection": nh.local_connection(nh.examples.roller_racer().system)}, "have two shape variables"),
     ask=lambda asked: nh.plot.curvature(**{"connection": car()} | asked),
 )

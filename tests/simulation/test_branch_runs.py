@@ -86,7 +86,7 @@ def test_thinned_runs_keep_every_so_many_states() -> None:
     assert np.array_equal(thin.displacement, whole.displacement[::4])
     assert np.array_equal(thin.configuration, whole.configuration[::4])
     assert whole.multipliers.shape == (12, 1)
-    with pytest.raises(ValueError, match=r"`Orbit\.multipliers` must have every step.*Run with save_every=1"):
+    with pytest.raises(ValueError, match=r"`Orbit\.multipliers` must have all states.*Run with save_every=1"):
         _ = thin.multipliers
 
 

@@ -518,7 +518,7 @@ def flowed(*times: float, **options: Any) -> nh.Orbit:
 
 # What impacts do not have is refused, with the reason.
 test_what_impacts_do_not_have_is_refused = refusals(
-    (lambda: nh.Impact(restitution=1.1), "be from 0 to 1"),
+    (lambda: nh.Impact(restitution=1.1), "lie between 0 and 1"),
     (lambda: nh.Impact("up"), r"Impact\(normal=...\)"),
     (lambda: nh.Impact((0.0, 0.0)), "be no zero vector"),
     (lambda: nh.Impact(point=(0.0, 0.0)), "come with a spatial vector"),

@@ -208,7 +208,7 @@ def _check_begin(problem: Problem, point: np.ndarray) -> None:
     """Refuse fewer numbers than there are unknowns, and a guess without a motion."""
     if len(problem.kind_of) <= len(point):
         got = f"{len(problem.kind_of)} numbers for {len(point)} unknowns"
-        raise error(WHERE, "be more than the unknowns", got, "Measure longer.")
+        raise error(WHERE, "hold more numbers than there are unknowns", got, "Record for longer.")
     if not np.isfinite(problem.rows(point)).all():
         remedy = "Begin nearer to the body, or with a smaller time step."
         raise error("fit(guess=...)", "have a motion through the measurements", "an orbit that ends", remedy)

@@ -108,7 +108,7 @@ def _sides(bounds: Any, path: Array | None, shapes: list[int]) -> Float[np.ndarr
         return np.stack([low - margin, high + margin], -1)
     sides = array(where, ((-_REACH, _REACH),) * 2 if bounds is None else bounds, (2, 2), remedy)
     if not (sides[:, 0] < sides[:, 1]).all():
-        raise error(where, "ascend", shown(bounds), remedy)
+        raise error(where, "have its lower end first", shown(bounds), remedy)
     return sides
 
 

@@ -259,7 +259,7 @@ def check_systems(members: Members) -> None:
     if step is not None and callable(getattr(members.discrete, "difference", None)):
         where, got = "ensemble(parameters={'time_step': ...})", "a function"
         remedy = "Run `simulate` for each: your own discrete Lagrangian includes its time step."
-        raise error(where, "go with a difference by name", got, remedy)
+        raise error(where, "come with a difference given by its name", got, remedy)
     if step is not None and not np.all(step > 0):
         at = int(np.argmax(~(step > 0)))
         remedy = f"Pass positive time steps. This is member {at}."

@@ -272,7 +272,7 @@ class Forced(AbstractSystem):
             got = "another order (in substeps back in time slips add energy), scheme, difference or constraint, "
             got += "or an inertia operator"
             remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
-            raise error("Forced(force=Slip(...))", "stand in steps of order 2 that keep their energy", got, remedy)
+            raise error("Forced(force=Slip(...))", "be discretized with order 2 and the scheme 'energy'", got, remedy)
         return True
 
     @functools.cached_property
