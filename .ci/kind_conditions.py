@@ -29,16 +29,16 @@ def _answers_bool(node: ast.AST) -> str | None:
 def conditions() -> dict[str, tuple[int, int]]:
     """Return how often each is asked, and in how many rooms, of those that are asked in more than two."""
     trees = _trees()
-    reference = {name for _, tree in trees for node in ast.walk(tree) if (name := _answers_bool(node)) is not None}
-    requests = collections.defaultdict(list)
+    names = {name for _, tree in trees for node in ast.walk(tree) if (name := _answers_bool(node)) is not None}
+    questions = collections.defaultdict(list)
     for room, tree in trees:
         for node in ast.walk(tree):
             name = node.attr if isinstance(node, ast.Attribute) else None
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 name = node.func.id
-            if name in reference:
-                requests[name].append(room)
-    return {name: (len(rooms), len(set(rooms))) for name, rooms in requests.items() if len(set(rooms)) > 2}
+            if name in names:
+                questions[name].append(room)
+    return {name: (len(rooms), len(set(rooms))) for name, rooms in questions.items() if len(set(rooms)) > 2}
 
 
 if __name__ == "__main__":

@@ -149,6 +149,8 @@ def test_a_placeholder_is_in_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyP
     (tmp_path / "CITATION.cff").write_text("version: 1.0\ndoi: PLACEHOLDER-DOI\n")
     (tmp_path / "recipe" / "recipe.yaml").write_text('context:\n  version: "1.0"\n')
     (tmp_path / "CHANGELOG.md").write_text("## [1.0]\n")
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "index.md").write_text("nonholo-1.0-py3-none")
     monkeypatch.setattr(RELEASE, "ROOT", tmp_path)
     monkeypatch.setattr(RELEASE, "PLACEHOLDERS", {"PLACEHOLDER-DOI": {"what": "the DOI", "files": ["CITATION.cff"]}})
     assert RELEASE.obstacles() == ["CITATION.cff:2: PLACEHOLDER-DOI, the DOI"]

@@ -171,8 +171,9 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
         raise error(where, f"hold the array {name} in chunks", f"shape {sizes} in chunks of {chunks}", remedy)
     within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
     codecs: Any = array.metadata.codecs  # type: ignore[union-attr]
-    if (level := max(getattr(codec, "clevel", 0) for codec in codecs)) > _HIGHEST:
-        raise error(where, f"compress the array {name} by a level of at most {_HIGHEST}", str(level), remedy)
+    levels = [getattr(codec, "clevel", 0) for codec in codecs]
+    if min(levels) < 0 or max(levels) > _HIGHEST:
+        raise error(where, f"compress the array {name} by a level from 0 to {_HIGHEST}", f"{levels}", remedy)
     orders = {getattr(codec, "endian", None) for codec in codecs}
     if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)

@@ -109,7 +109,7 @@ def restore_group(data: dict[str, Any]) -> AbstractMatrixGroup:
     if kind == "MatrixGroup":
         return MatrixGroup(data["basis"], data.get("form"))
     if kind not in _FAMILIES:
-        raise error(WHERE, "hold a group that this version knows", repr(kind), "Upgrade nonholo.")
+        raise error(WHERE, "hold a group of this version", repr(kind), "Upgrade nonholo.")
     return _FAMILIES[kind](data["n"])
 
 
@@ -270,7 +270,7 @@ def restore_motion(attributes: dict[str, Any], motion: Any, owner: str = "load_o
     remedy = f"Pass {owner}(path, discrete=...) with the {kind} that made this store."
     system = system_of(attributes, WHERE, remedy, missing_part(options))
     if kind not in _MOTIONS:
-        raise error(WHERE, "hold a motion that this version knows", repr(kind), "Upgrade nonholo.")
+        raise error(WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
     if type(motion_again).__name__ != kind or route != motion_again.route_name:
         raise error(WHERE, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")

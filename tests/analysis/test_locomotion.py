@@ -505,6 +505,7 @@ test_no_shaped_bodies_are_refused = refusals(
     ({"shape_coordinates": ("a", "a")}, "be different names"),
     ({"shape_coordinates": ()}, "be different names"),
     ({"constraint_forms": None}, "have a Lagrangian or constraints"),
+    ({"name": 1}, "be a text"),
     ({"constraint_forms": lambda s: jnp.ones((3, 3)) + s[0]}, r"shape \(s, 5\)"),
     ({"lagrangian": lambda s, xi, ds: xi * ds[0] + s[0]}, "a scalar"),
     ask=lambda given: nh.ShapedBody(

@@ -184,7 +184,7 @@ def test_other_orbits_are_refused() -> None:
     ready = nh.examples.particle().simulate(steps=4, save_every=2)
     slipping = nh.discretize(nh.Forced(sleigh, force=nh.Slip([[0.0, 0.0, 1.0]], grip=0.5)), 0.1)
     slid = nh.simulate(slipping, restricted_velocity=(0.1, 0.2, 0.3), steps=4)
-    cases = (thinned, "every step"), (pushed, "rollout"), (ready, "every step"), (slid, "never yields")
+    cases = (thinned, "all states"), (pushed, "rollout"), (ready, "all states"), (slid, "never yields")
     for orbit, words in cases:
         with pytest.raises(ValueError, match=words):
             _ = orbit.tangent

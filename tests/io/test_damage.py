@@ -141,9 +141,9 @@ def test_what_is_written_has_a_checksum(tmp_path: Path) -> None:
         assert_refused(tmp_path / "run.zarr", "checksum differs", nh.load_orbit, nh.resume)
 
 
-@pytest.mark.parametrize(("key", "value"), [("shape", 10**400), ("clevel", 22)], ids=["shape", "level"])
+@pytest.mark.parametrize(("key", "value"), [("shape", 10**400), ("clevel", 22), ("clevel", -3)])
 def test_numbers_of_an_array_that_zarr_takes_are_refused(key: str, value: int, tmp_path: Path) -> None:
-    """A shape beyond all floats, and a level that the compressor does not have."""
+    """A shape beyond all floats, and levels that the compressor does not have."""
     _run(tmp_path / "run.zarr")
     file = tmp_path / "run.zarr" / "time" / "zarr.json"
     document = json.loads(file.read_text())

@@ -116,17 +116,18 @@ def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
 
 
 def test_functions_give_the_impulses_of_what_is_compiled() -> None:
-    """Weight, friction and table as Python functions, by the definition of the impulses, agree with the kernel."""
+    """Weight, friction, table and a force of the time, by the definition of the impulses, agree with the kernel."""
     tilted = nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0))
     spatial = nh.Gravity([0.1, -0.2, -0.5], [0.3, 0.1, 0.2])
     rng = np.random.default_rng(6)
     for system, heavy in ((TOP, HEAVY), (SLEIGH, SLOPE), (tilted, HEAVY), (GENERAL["any d on SE(3)"][0], spatial)):
         rub, dim = nh.Friction(rng.uniform(0, 0.3, system.group.dim)), system.group.dim
-        for force in (rub, rng.normal(size=(16, dim)), (rng.normal(size=(16, dim)), rub)):
+        free = nh.discretize(nh.Forced(system, heavy, rub, "variational"), 0.05).route.compiled_route.single  # type: ignore[union-attr]
+        for force in (rub, rng.normal(size=(16, dim)), (rng.normal(size=(16, dim)), rub), push):
             forced = nh.Forced(system, heavy, force, "variational")
             discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
             orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)
-            route = FunctionRoute(discrete.route.compiled_route.single, forced)  # type: ignore[union-attr]
+            route = FunctionRoute(free, forced)
             stepper = route.stepper(discrete, with_poses=True)
             state, _ = stepper.start(First((orbit.reduced_momentum[0], orbit.canonical_pose[0])))
             rows = tuple(np.empty((17, width)) for width in stepper.columns.values())

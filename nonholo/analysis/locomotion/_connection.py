@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.base.checks import array, assign, choice, count, error, instance, names, needs, shown, trailing
+from nonholo.base.checks import array, assign, choice, count, error, instance, names, needs, shown, text, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup, components_of
@@ -344,6 +344,7 @@ class ShapedBody:
     def __post_init__(self) -> None:
         checked_group("ShapedBody(group=...)", self.group)
         names(_NAMES, instance(_NAMES, self.shape_coordinates, tuple, "be names", "Pass a tuple of strings."))
+        text("ShapedBody(name=...)", self.name)
         if self.lagrangian is None and self.constraint_forms is None:
             remedy = "Pass lagrangian=, constraint_forms= or both."
             raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)
