@@ -99,10 +99,10 @@ def _copied(copy: Path, numba: Path) -> None:
 
 def main(arguments: list[str]) -> int:
     """Try or list the errors that are named, by room or in full, or all; return 1 if one was not caught."""
-    names, reference = set(arguments) - {"--list"}, mutants()
-    if unknown := names - {name for mutant in reference for name in (mutant.name, mutant.room)}:
+    names, table = set(arguments) - {"--list"}, mutants()
+    if unknown := names - {name for mutant in table for name in (mutant.name, mutant.room)}:
         sys.exit(f"No error is called {', '.join(sorted(unknown))}.")
-    chosen = [mutant for mutant in reference if not names or names & {mutant.name, mutant.room}]
+    chosen = [mutant for mutant in table if not names or names & {mutant.name, mutant.room}]
     if "--list" in arguments:
         sys.stdout.writelines(f"{mutant.name}: {mutant.why}, {mutant.file}\n" for mutant in chosen)
         return 0

@@ -188,21 +188,21 @@ def test_every_result_of_every_example(
     for name in refused:
         with pytest.raises((pickle.PicklingError, AttributeError), match=r"<lambda>|forms|lagrangian|action|energy"):
             pickle.dumps(things[name])
-    others = {name: value for name, value in things.items() if name not in refused}
+    whole = {name: value for name, value in things.items() if name not in refused}
     failures = {}
-    for name, value in list(others.items()):
+    for name, value in list(whole.items()):
         try:
             back = pickle.loads(pickle.dumps(value))  # noqa: S301
         except Exception as failure:
             failures[name] = repr(failure)
-            del others[name]
+            del whole[name]
             continue
         for other in (back, copy.deepcopy(value)):
             if computed(other, set()) or not same(value, other):
                 failures[name] = "another"
-    others = sent_back(list(others.values()))
-    failures |= {name: "sent" for name, other in zip(others, others, strict=True) if not same(others[name], other)}
-    print(f"{len(others)} results, {len(refused)} with functions")  # noqa: T201
+    others = sent_back(list(whole.values()))
+    failures |= {name: "sent" for name, other in zip(whole, others, strict=True) if not same(whole[name], other)}
+    print(f"{len(whole)} results, {len(refused)} with functions")  # noqa: T201
     assert not failures, "; ".join(f"{name} ({why})" for name, why in failures.items())
     assert refused == REFUSED
-    assert len(others) > 200
+    assert len(whole) > 200

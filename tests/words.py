@@ -100,6 +100,7 @@ def too_long(lengths: dict[str, int]) -> list[str]:
 
 
 if __name__ == "__main__":
-    print("\n".join(lines := complaints() + too_long(lengths())))  # noqa: T201
-    print(f"{sum(lengths().values())} words in the handwritten pages of docs, of at most {MOST}")  # noqa: T201
+    pages = lengths()
+    print("\n".join(lines := complaints() + too_long(pages)))  # noqa: T201
+    print(f"{sum(pages.values())} words in the handwritten pages of docs, of at most {MOST}")  # noqa: T201
     sys.exit(bool(lines))

@@ -183,16 +183,12 @@ def column_names(group: AbstractMatrixGroup) -> list[str]:
 
 
 def compact_names(group: AbstractMatrixGroup) -> list[str]:
-    """Return the names of the numbers of a compact pose; none for products, whose factors may share them.
-
-    Nor for a custom group whose pose is not the matrix row by row.
+    """Return the names of the numbers of a compact pose; none where the columns are other numbers, as of products.
 
     Example:
         >>> compact_names(nh.SE(2)), compact_names(nh.SO(3))
         (['cos', 'sin', 'x', 'y'], ['qw', 'qx', 'qy', 'qz'])
     """
-    if isinstance(group, ProductGroup):
-        return []
     position, turn = layout(group)
     if turn == HEADING:
         return ["cos", "sin", *position]

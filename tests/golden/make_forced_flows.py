@@ -87,16 +87,16 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
     coordinates = [*angles, *places]
     kane = mechanics.KanesMethod(space, coordinates, speeds, kd_eqs=kinematics, u_auxiliary=spare)
     kane.kanes_equations([rigid], loads)
-    reference, changes = kane.kindiffdict(), sympy.symbols(f"r:{len(speeds)}")
+    velocities, changes = kane.kindiffdict(), sympy.symbols(f"r:{len(speeds)}")
     names = sympy.symbols(f"s:{len(coordinates) + len(speeds)}")
     plain = dict(zip([*coordinates, *speeds], names, strict=True))
     reaction = kane.auxiliary_eqs.subs({u.diff(dot): r for u, r in zip(speeds, changes, strict=True)})
-    moved = sympy.Matrix([reference[x.diff(dot)] for x in coordinates])
+    moved = sympy.Matrix([velocities[x.diff(dot)] for x in coordinates])
     free = dict.fromkeys(lam, 0)
     matrices = moved, kane.mass_matrix, kane.forcing, reaction
-    moved, mass, forcing, reaction = (each.subs(reference).subs(plain) for each in matrices)
+    moved, mass, forcing, reaction = (each.subs(velocities).subs(plain) for each in matrices)
     field = sympy.lambdify([names, TIME], [moved, mass, forcing.subs(free)], cse=True)
-    equations = sympy.lambdify([names, changes, TIME], [reaction.jacobian(lam), reaction.subs(free)], cse=True)
+    constraint = sympy.lambdify([names, changes, TIME], [reaction.jacobian(lam), reaction.subs(free)], cse=True)
     turned = sympy.lambdify([names], space.dcm(frame).subs(plain), cse=True)
 
     def rate(time: float, y: np.ndarray) -> np.ndarray:
@@ -104,7 +104,7 @@ def equations(body: dict[str, Any], acting: list[str]) -> tuple[Callable[..., An
         return np.concatenate([np.ravel(first), np.ravel(np.linalg.solve(M, f))])
 
     def multipliers(time: float, y: np.ndarray) -> np.ndarray:
-        slope, rest = equations(y, rate(time, y)[-len(speeds) :], time)
+        slope, rest = constraint(y, rate(time, y)[-len(speeds) :], time)
         return -np.ravel(np.linalg.solve(slope, rest))
 
     return rate, multipliers, turned

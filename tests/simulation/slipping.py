@@ -22,24 +22,24 @@ class Continuous:
         fixed = [a for a in np.asarray(inside.annihilator) if np.linalg.matrix_rank([*rows, a]) > len(rows)]
         self.fixed, self.potential_force = np.reshape(fixed, (-1, n)), forced.potential_force
 
-    def tied(self, content: list[bool]) -> np.ndarray:
+    def tied(self, resting: list[bool]) -> np.ndarray:
         """Return the rows that hold."""
         return np.concatenate(
-            [self.fixed, *(slip.rows for slip, rests in zip(self.slips, content, strict=True) if rests)]
+            [self.fixed, *(slip.rows for slip, rests in zip(self.slips, resting, strict=True) if rests)]
         )
 
-    def rate(self, omega: np.ndarray, g: np.ndarray, content: list[bool]) -> tuple[np.ndarray, list[np.ndarray]]:
+    def rate(self, omega: np.ndarray, g: np.ndarray, resting: list[bool]) -> tuple[np.ndarray, list[np.ndarray]]:
         """Return the acceleration and the forces of all contacts, from d/dt (I omega) = ad* + f + sum lambda a."""
         p = self.inertia @ omega
         bent = np.array([p @ self.group.bracket(omega, x) for x in np.eye(self.group.dim)])
         bent = bent + self.potential_force(g) + (0.0 if self.force is None else self.force(g, omega))
-        forces = [self.friction(i, omega) for i in range(len(content))]
-        for slip, force, rests in zip(self.slips, forces, content, strict=True):
+        forces = [self.friction(i, omega) for i in range(len(resting))]
+        for slip, force, rests in zip(self.slips, forces, resting, strict=True):
             bent = bent + (0.0 if rests else slip.rows.T @ force)
-        n, tied = self.group.dim, self.tied(content)
+        n, tied = self.group.dim, self.tied(resting)
         matrix = np.block([[self.inertia, -tied.T], [tied, np.zeros((len(tied),) * 2)]])
         solution, at = np.linalg.solve(matrix, np.append(bent, np.zeros(len(tied)))), n + len(self.fixed)
-        for i in np.flatnonzero(content):
+        for i in np.flatnonzero(resting):
             forces[i] = solution[at : at + len(forces[i])]
             at += len(forces[i])
         return solution[:n], forces
@@ -61,45 +61,45 @@ class Continuous:
         """Return the velocity and the pose after a time, and how the contacts were."""
         t, kinds = 0.0, []
         state = np.append(np.asarray(omega, float), np.eye(self.group.size))
-        content = [float(np.linalg.norm(slip.rows @ omega)) < _RESTING for slip in self.slips]
+        resting = [float(np.linalg.norm(slip.rows @ omega)) < _RESTING for slip in self.slips]
         while t < time:
-            self._settle(state, content)
-            kinds.append(" ".join("hold" if rests else "slide" for rests in content))
-            t, state = self._stretch(t, time, state, content)
+            self._settle(state, resting)
+            kinds.append(" ".join("hold" if rests else "slide" for rests in resting))
+            t, state = self._stretch(t, time, state, resting)
         return *self.parts(state), kinds
 
-    def _settle(self, state: np.ndarray, content: list[bool]) -> None:
+    def _settle(self, state: np.ndarray, resting: list[bool]) -> None:
         """Let contacts yield whose reactions are beyond their grips, the worst one first; note where slips go."""
         for i, slip in enumerate(self.slips):
             v = slip.rows @ self.parts(state)[0]
             if np.linalg.norm(v) >= _RESTING:
                 self.toward[i] = v / np.linalg.norm(v)
         while True:
-            _, forces = self.rate(*self.parts(state), content)
-            sizes = zip(content, forces, self.slips, strict=True)
+            _, forces = self.rate(*self.parts(state), resting)
+            sizes = zip(resting, forces, self.slips, strict=True)
             over = [rests * (np.linalg.norm(force) - slip.grip) for rests, force, slip in sizes]
             worst = int(np.argmax(over))
             if over[worst] <= 0:
                 return
-            self._release(worst, forces[worst], content)
+            self._release(worst, forces[worst], resting)
 
-    def _release(self, i: int, force: np.ndarray, content: list[bool]) -> None:
+    def _release(self, i: int, force: np.ndarray, resting: list[bool]) -> None:
         """Let a contact yield against the force that held it."""
-        content[i], self.toward[i] = False, -force / np.linalg.norm(force)
+        resting[i], self.toward[i] = False, -force / np.linalg.norm(force)
 
-    def _stretch(self, t: float, time: float, state: np.ndarray, content: list[bool]) -> tuple[float, np.ndarray]:
+    def _stretch(self, t: float, time: float, state: np.ndarray, resting: list[bool]) -> tuple[float, np.ndarray]:
         """Move on until a contact changes, which is changed then."""
 
         def field(_: float, state: np.ndarray) -> np.ndarray:
             omega, g = self.parts(state)
-            return np.append(self.rate(omega, g, content)[0], g @ self.group.hat(omega))
+            return np.append(self.rate(omega, g, resting)[0], g @ self.group.hat(omega))
 
         def change_of(i: int) -> Any:
             def left(_: float, state: np.ndarray) -> float:
                 """Return how far it is to the change."""
                 omega, g = self.parts(state)
-                if content[i]:
-                    return self.slips[i].grip - float(np.linalg.norm(self.rate(omega, g, content)[1][i]))
+                if resting[i]:
+                    return self.slips[i].grip - float(np.linalg.norm(self.rate(omega, g, resting)[1][i]))
                 v = self.slips[i].rows @ omega
                 return float(self.toward[i] @ v if len(v) == 1 else np.linalg.norm(v)) - _RESTING
 
@@ -107,21 +107,21 @@ class Continuous:
             stop.terminal, stop.direction = True, -1
             return stop
 
-        stops = [change_of(i) for i in range(len(content))]
+        stops = [change_of(i) for i in range(len(resting))]
         path = solve_ivp(field, (t, time), state, "DOP853", rtol=1e-11, atol=1e-12, events=stops)
         after = path.y[:, -1].copy()
         if path.status == 1:
-            self._change(next(i for i, times in enumerate(path.t_events) if len(times)), after, content)
+            self._change(next(i for i, times in enumerate(path.t_events) if len(times)), after, resting)
         return float(path.t[-1]), after
 
-    def _change(self, i: int, state: np.ndarray, content: list[bool]) -> None:
+    def _change(self, i: int, state: np.ndarray, resting: list[bool]) -> None:
         """Let a contact yield that held, and one rest that slid."""
         omega, g = self.parts(state)
-        if content[i]:
-            self._release(i, self.rate(omega, g, content)[1][i], content)
+        if resting[i]:
+            self._release(i, self.rate(omega, g, resting)[1][i], resting)
             return
-        content[i] = True
-        tied = self.tied(content)
+        resting[i] = True
+        tied = self.tied(resting)
         into = np.linalg.solve(self.inertia, tied.T)
         omega -= into @ np.linalg.solve(tied @ into, tied @ omega)
 

@@ -171,19 +171,16 @@ def test_impacts_are_roots_of_the_parts_of_steps(name: str) -> None:
     steps = np.concatenate([orbit.events[event].step for event in orbit.events])
     count = 0
     for wall in walls:
-        for k, result in enumerate(orbit.events[wall.name].step):
-            hit, node = orbit.events[wall.name].chosen(slice(k, k + 1)), orbit.chosen(slice(result, result + 1))
-            if (steps == result).sum() > 1:
+        for k, step in enumerate(orbit.events[wall.name].step):
+            hit, node = orbit.events[wall.name].chosen(slice(k, k + 1)), orbit.chosen(slice(step, step + 1))
+            if (steps == step).sum() > 1:
                 continue
             count += 1
             gap = lambda s: wall.function(discrete.after_parts(node, np.array([s])))[0]  # noqa: B023, E731
             assert abs(brentq(gap, 1e-9, 1.0, xtol=1e-16) - hit.fraction[0]) < 1e-13
             assert abs(wall.function(hit.states)[0]) < 1e-15
             assert abs(wall.function(hit.after)[0]) < 1e-15
-            ahead, after = (
-                discrete.after_parts(hit.after, 1 - hit.fraction),
-                orbit.chosen(slice(result + 1, result + 2)),
-            )
+            ahead, after = discrete.after_parts(hit.after, 1 - hit.fraction), orbit.chosen(slice(step + 1, step + 2))
             assert_near(ahead, after, 1e-15, "reduced_momentum", "configuration")
     assert count > 5
 
