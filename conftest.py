@@ -93,7 +93,5 @@ def _doctest_names(doctest_namespace: dict[str, object]) -> None:
 
 @pytest.fixture(autouse=True, scope="module")
 def _release_programs() -> Iterator[None]:
-    """Drop compiled JAX programs after each file: each holds memory maps, of which a process may have only so many."""
     yield
-    if "jax" in sys.modules:
-        sys.modules["jax"].clear_caches()
+    compilers.release_programs()

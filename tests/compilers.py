@@ -5,12 +5,14 @@ import fcntl
 import functools
 import hashlib
 import os
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
+_MAPS, _MANY = Path("/proc/self/maps"), 20_000
 _PATIENCE = 300.0  # seconds to wait for another process that compiles; then one compiles for itself
 _held: set[Path] = set()
 
@@ -36,6 +38,12 @@ def use_caches() -> None:
 def use_one_thread() -> None:
     """Let linear algebra run in one thread, before NumPy is imported: each core has a process of its own."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def release_programs() -> None:
+    """Drop JAX's compiled programs when there are many: each holds memory maps, of which Linux allows 65,530."""
+    if "jax" in sys.modules and _MAPS.exists() and _MAPS.read_bytes().count(b"\n") > _MANY:
+        sys.modules["jax"].clear_caches()
 
 
 def compile_once() -> None:

@@ -224,6 +224,8 @@ def _rate(slope: Float[np.ndarray, "m m"]) -> float:
 
 def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
     places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
+    if motion.time_step is not None:
+        velocities = tangents.departing(motion, places, velocities)
     return places[0][:-1] if motion.system.is_driven else places[0], velocities[0]
 
 

@@ -331,14 +331,21 @@ class SteadyMotion:
 
 
 def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> SteadyMotion:
-    """Return the steady motion near a state: each correction is the shortest one of the states that matter."""
-    state, is_rest = (configuration, body_velocity), body_velocity is None or not np.any(body_velocity)
+    """Return the steady motion near a state; of a map in coordinates its own, which begins at that of the flow."""
     is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
     flow: Any = system.system if is_map else system  # the map rests where the flow does
-    begin: Any = None
+    state = _steady_state(flow, (configuration, body_velocity))
+    if is_map and np.any(body_velocity) and getattr(flow, "coordinates", ()):
+        state = _steady_state(system, state)
+    return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
+
+
+def _steady_state(subject: Any, state: tuple[Any, Any]) -> tuple[Any, Any]:
+    """Correct a state until it is steady: each correction is the shortest one of the states that matter."""
+    is_rest, begin = state[1] is None or not np.any(state[1]), None
     for _ in range(_MOST):
-        local, beside = local_motion("equilibria", flow, *state)
-        equations = _equations_of(flow, local)
+        local, beside = local_motion("equilibria", subject, *state)
+        equations = _equations_of(getattr(subject, "system", subject), local)
         change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
         state = beside(-change[: local.places], -change[local.places :])
         velocity = local.state[local.places :]
@@ -349,7 +356,7 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
             if _has_stopped(velocity, *begin):
                 remedy = "Guess closer to one, or leave body_velocity out."
                 raise error(_NEAR, "be near a steady motion", "one from which corrections lead to rest", remedy)
-            return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
+            return state
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(_NEAR, "be near a steady motion", got, "Guess closer to one.")
 

@@ -54,6 +54,12 @@ def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([motion.system.places.frame(x, v, t) for t in times])
 
 
+def departing(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the velocities of the nodes at which steps begin."""
+    momenta, _ = in_rows(equations.momenta, motion.system, x, v, np.float64(motion.time_step))
+    return in_rows(equations.inverse_legendre, motion.system, x, momenta)
+
+
 def units(system: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return units of the velocities in which each has the same kinetic energy."""
     return in_double(equations.acceleration_matrix, system, x, v)[1].velocity

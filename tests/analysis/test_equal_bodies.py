@@ -186,6 +186,7 @@ ANSWERS = {
 }
 
 
+@pytest.mark.profile("routes", cases=["sleigh-rollout", "sleigh-step", "sleigh-definition", "top-linearization"])
 @pytest.mark.parametrize("answer", ANSWERS.values(), ids=ANSWERS)
 @pytest.mark.parametrize("body", ARROWHEADS.values(), ids=ARROWHEADS)
 def test_arrowheads_with_matrices(body: Any, answer: Any) -> None:

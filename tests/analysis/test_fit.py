@@ -164,7 +164,7 @@ def test_robust_loss_bears_outliers() -> None:
     assert nh.fit(sleigh, record, GUESS).covariance[0, 0] > 100 * result.covariance[0, 0]
 
 
-@pytest.mark.profile("routes", cases=["good", "outlier", "more than the noise"])
+@pytest.mark.profile("routes", cases=["good", "far", "outlier", "more than the noise"])
 @pytest.mark.parametrize(
     ("change", "options", "outcome"),
     [

@@ -147,6 +147,21 @@ def test_multipliers_tend_to_rates() -> None:
     assert abs(errors[0] / errors[1] - 4) < 0.1
 
 
+def test_a_map_has_steady_motions_of_its_own() -> None:
+    """A disk on a circle leans as it did after 50 steps; its roll is that of the flow up to the step squared."""
+    start, moved = CASES["disk on a circle"][1], []
+    for h in (0.06, 0.03):
+        discrete = nh.discretize(DISK, h)
+        result = nh.equilibria(discrete, **start)
+        there = {"configuration": result.configuration, "body_velocity": result.body_velocity}
+        orbit = nh.simulate(discrete, **there, steps=50)
+        assert np.ptp(orbit.configuration[:, 3]) <= 1e-13
+        assert np.ptp(orbit.body_velocity[:, 2:], axis=0).max() <= 1e-12
+        moved.append(result.body_velocity[4] - steady_roll(result.configuration[3], result.body_velocity[2]))
+    assert abs(moved[0]) > 1e-4
+    assert abs(moved[0] / moved[1] - 4) < 0.1
+
+
 @pytest.mark.profile("routes", instead="test_a_sleeping_top")
 def test_transverse_rates_of_tops_of_any_dimension() -> None:
     """Eigenvalues beside an equilibrium of a top on SO(4) are the rates and multipliers of `equilibria`, and a zero."""

@@ -104,6 +104,7 @@ def test_charts_have_their_own_dimension(tmp_path: Path) -> None:
     assert (sizes["component"], sizes["chart"], sizes["pose_component"]) == (4, 6, 12)
 
 
+@pytest.mark.profile("routes", keep=["vectors"])
 @pytest.mark.parametrize(
     ("group", "size"),
     [(nh.SE(4), 5), (nh.ProductGroup(nh.Translations(2), nh.Translations(3)), 3)],

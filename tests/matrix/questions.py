@@ -12,6 +12,7 @@ from scipy.linalg import expm
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import checked_state, tangents
+from nonholo.systems import alike_in_time
 
 _SIZE = {"rattleback": 3e-5}  # of differences of order 4, along curves of admissible starts; its shape is in cm
 _WEIGHTS = {1: 2 / 3, 2: -1 / 12}
@@ -154,32 +155,50 @@ def _beside(c: Case, ready: Any) -> dict[str, Any]:
     return {name: getattr(orbit, name)[0] for name in start}
 
 
-def stretches(c: Case, run: Run) -> tuple[Any, np.ndarray]:
-    """Return a run, and the factors by which it stretches small changes of its start."""
+def stretches(c: Case, run: Run) -> tuple[Any, Callable[..., np.ndarray]]:
+    """Return a run, and the factors by which it stretches small changes of its start, as a function of their units."""
     start = c.start
     if c.ready is None:
         velocity = start["restricted_velocity"] @ np.asarray(c.system.constraint_subspace)
         start = {"configuration": c.system.group.identity, "body_velocity": velocity}
     reference, rows = changes(c, run, start, len(names_of(c)))
-    matters = slice(-reference.tangent.shape[-1] if not c.in_coordinates else 0, None)
-    carried = rows[-1][matters] @ np.linalg.pinv(rows[0][matters], rcond=1e-7)
-    return reference, np.linalg.svd(carried, compute_uv=False)[: reference.tangent.shape[-1]]
+    count = reference.tangent.shape[-1]
+    matters = slice(-count if not c.in_coordinates else 0, None)
+
+    def factors(units: Any = 1.0) -> np.ndarray:
+        before, after = (rows[k][matters] / np.reshape(units, (-1, 1)) for k in (0, -1))
+        return np.linalg.svd(after @ np.linalg.pinv(before, rcond=1e-7), compute_uv=False)[:count]
+
+    return reference, factors
+
+
+def own_units(c: Case, orbit: Any) -> Any:
+    """Return the units of changes in which exponents are measured; of momenta alone none matter to volumes."""
+    if not c.in_coordinates:
+        return 1.0
+    maps, _, units, places = tangents.changes(orbit)
+    sizes = alike_in_time(maps, units, places, np.ptp(orbit.time))
+    return np.insert(sizes, [i - k for k, (i, _) in enumerate(sorted(getattr(c.system, "prescribed", ())))], 1.0)
 
 
 @ability
 def tangent_maps(c: Case, _: Path) -> None:
     """Their product along a run stretches changes of the start as differences of runs do."""
-    orbit, wanted = stretches(c, stepping(c.discrete, 3, **c.run))
+    orbit, factors = stretches(c, stepping(c.discrete, 3, **c.run))
     product = np.linalg.multi_dot(orbit.tangent[::-1])
-    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, 1e-6, 1e-8)
+    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), factors(), 1e-6, 1e-8)
 
 
 @ability
 def lyapunov_exponents(c: Case, _: Path) -> None:
-    """Their sum is the rate at which differences of runs say that volumes grow."""
-    orbit, wanted = stretches(c, stepping(c.discrete, 3, **c.run))
-    result = nh.lyapunov_exponents(orbit)
-    np.testing.assert_allclose(result.sum() * orbit.time[-1], np.log(wanted).sum(), 0, 1e-6)
+    """Their sum is the rate at which differences of runs say that volumes grow, in units of the body."""
+    orbit, factors = stretches(c, stepping(c.discrete, 3, **c.run))
+    _assert_grown(c, orbit, factors)
+
+
+def _assert_grown(c: Case, orbit: Any, factors: Callable[..., np.ndarray]) -> None:
+    growth = nh.lyapunov_exponents(orbit).sum() * orbit.time[-1]
+    np.testing.assert_allclose(growth, np.log(factors(own_units(c, orbit))).sum(), 0, 1e-6)
 
 
 @ability
@@ -234,10 +253,10 @@ def tracking_feedback(c: Case, _: Path) -> None:
 @ability
 def tangent_maps_of_flows(c: Case, _: Path) -> None:
     """Their product stretches changes of the start as differences of flows do, at the rates that exponents sum up."""
-    orbit, wanted = stretches(c, flowing(c.system, c.h, 2 * c.h))
-    product, sums = orbit.tangent[1] @ orbit.tangent[0], nh.lyapunov_exponents(orbit).sum() * orbit.time[-1]
-    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, 1e-6, 1e-8)
-    np.testing.assert_allclose(sums, np.log(wanted).sum(), 0, 1e-6)
+    orbit, factors = stretches(c, flowing(c.system, c.h, 2 * c.h))
+    stretched = np.linalg.svd(orbit.tangent[1] @ orbit.tangent[0], compute_uv=False)
+    np.testing.assert_allclose(stretched, factors(), 1e-6, 1e-8)
+    _assert_grown(c, orbit, factors)
 
 
 @ability

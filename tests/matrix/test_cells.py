@@ -4,6 +4,7 @@ import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
+import compilers
 import pytest
 from matrix.abilities import ABILITIES, case
 from matrix.kinds import KINDS
@@ -62,6 +63,7 @@ def run_cell(
     """Return what runs a cell."""
 
     def run(kind: str, ability: str) -> None:
+        compilers.release_programs()
         rule = CELLS[kind, ability]
         if "wide" in ALL[kind].traits:  # on every machine
             monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)

@@ -44,7 +44,7 @@ CASES: dict[str, tuple[AbstractSystem, Callable[[float], dict[str, Any]]]] = {
 }
 
 
-@pytest.mark.profile("routes", keep=["Heisenberg", "own constraint"])
+@pytest.mark.profile("routes", keep=["own constraint"])
 @pytest.mark.parametrize("name", CASES)
 def test_steps_are_of_order_two(name: str) -> None:
     """Momentum, pose and balance fall with the square of the step beside the flow; no force is the free map."""

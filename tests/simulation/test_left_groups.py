@@ -68,6 +68,7 @@ def ended(run: Any, *arguments: Any, **options: Any) -> Any:
     return failure.value.orbit
 
 
+@pytest.mark.profile("routes", cases=["functions that yield"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_map_ends_before_the_step_that_leaves(name: str) -> None:
     """Whatever is saved, and however the run is cut, the last state is the one before the first pose off the group."""
