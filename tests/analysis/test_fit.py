@@ -16,6 +16,7 @@ from scipy.stats import binom, norm
 import nonholo as nh
 from nonholo.analysis.inverse import Fit
 from nonholo.analysis.inverse._measurements import kinds_of, names_of
+from nonholo.analysis.inverse._models import maker_of
 from nonholo.base.types import Array
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
@@ -203,6 +204,31 @@ def test_positions_alone_tell_the_first_pose() -> None:
     result = nh.fit(sleigh, places, GUESS)
     np.testing.assert_allclose([*result.parameters.values()], [0.7, 0.4], rtol=1e-7)
     np.testing.assert_allclose(result.orbit.configuration, orbit.configuration, atol=1e-7)
+
+
+def _in_wells(power: float) -> Callable[[dict], nh.Forced]:
+    """Return what makes a sleigh in a well, whose potential is a function."""
+
+    def system_of(p: dict) -> nh.Forced:
+        well = lambda g: power * p["stiffness"] * (g[0, 2] ** 2 + g[1, 2] ** 2)  # noqa: E731
+        return nh.Forced(nh.ChaplyginSleigh(1.0, 0.7, 0.0), well)
+
+    return system_of
+
+
+@pytest.mark.profile("routes", instead="test_functions_of_a_system_are_parts_of_its_model")
+def test_a_potential_may_be_a_function_of_the_parameters() -> None:
+    """The stiffness of a well is found from an exact record."""
+    orbit = nh.simulate(nh.discretize(_in_wells(0.5)({"stiffness": 0.3}), 0.1), restricted_velocity=(1, 0.5), steps=30)
+    assert abs(nh.fit(_in_wells(0.5), orbit, {"stiffness": 0.4}).parameters["stiffness"] - 0.3) < 1e-7
+
+
+def test_functions_of_a_system_are_parts_of_its_model() -> None:
+    """A system with the same numbers and another potential is another one, and has another program."""
+    one, other = _in_wells(0.5)({"stiffness": 1.0}), _in_wells(1.0)({"stiffness": 1.0})
+    first, again, second = (maker_of(lambda _, s=s: s, (("stiffness", ()),), np.ones(1)) for s in (one, one, other))
+    assert first == again
+    assert first != second
 
 
 @pytest.mark.profile("routes", instead="test_bodies_are_found_within_their_errors")

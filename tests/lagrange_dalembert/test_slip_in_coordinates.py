@@ -145,6 +145,7 @@ def _both(q):  # noqa: ANN001, ANN202
     return jnp.concatenate([_blade(q), jnp.array([[jnp.cos(q[2]), jnp.sin(q[2]), 0.0]])])
 
 
+@pytest.mark.profile("routes", keep=["group"])
 @pytest.mark.parametrize("place", ["coordinates", "group"])
 def test_a_blade_and_a_brake_slide_by_themselves(place: str) -> None:
     """The brake slides on while the blade comes to rest: order 2 to the flow of the body on SE(2), and T falls."""

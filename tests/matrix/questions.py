@@ -242,8 +242,10 @@ def tracking_feedback(c: Case, _: Path) -> None:
         c.discrete, start, np.zeros((40, n)), final_weight=1e6 if c.name == "rattleback" else 100.0
     )
     beside = {name: 1.02 * value for name, value in start.items() if "velocity" in name}
-    if getattr(c.system, "prescribed", ()):
-        velocity, q = {"body_velocity": start["body_velocity"]}, c.rows["configuration"][0]
+    if c.in_coordinates:
+        is_prescribed = bool(getattr(c.system, "prescribed", ()))
+        q = c.rows["configuration"][0] if is_prescribed else start["configuration"]
+        velocity = {"body_velocity": start["body_velocity"]} if is_prescribed else beside
         beside = {"configuration": q, "body_velocity": checked_state(c.system, q, velocity, 0.0, project=True)[1]}
     motion, alone = hold.simulate(**beside), nh.simulate(c.discrete, steps=40, **{**start, **beside})
     gaps = [np.abs(x.configuration[-1] - hold.reference.configuration[-1]).max() for x in (motion.orbit, alone)]

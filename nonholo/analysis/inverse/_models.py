@@ -337,17 +337,23 @@ def _compile_in_coordinates(
 
 
 def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> tuple[Any, ...]:
-    """Return what a function makes of numbers, as JAX traces it now: another one where what it reads has changed."""
+    """Return what a function makes of numbers, as JAX traces it now: another one where what it reads has changed.
+
+    Forces and potentials that are functions count as themselves.
+    """
+
+    def parts(x: Array) -> tuple[Any, list[Any], list[Any]]:
+        system = system_of(by_name(shapes, x))
+        leaves, structure = jax.tree.flatten(system)
+        own = system.parameters.values() if isinstance(system, AbstractCoordinateSystem) else leaves
+        return structure, [each for each in own if not callable(each)], [each for each in leaves if callable(each)]
 
     def leaves(x: Array) -> Array:
-        system = system_of(by_name(shapes, x))
-        own = system.parameters.values() if isinstance(system, AbstractCoordinateSystem) else jax.tree.leaves(system)
-        return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in own])
+        return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in parts(x)[1]])
 
-    structure = jax.tree.structure(system_of(by_name(shapes, numbers)))
-    return structure, trace(
-        "fit(system_of=...)", leaves, "the parameters", (jax.ShapeDtypeStruct(numbers.shape, float),)
-    )
+    structure, _, functions = parts(numbers)
+    program = trace("fit(system_of=...)", leaves, "the parameters", (jax.ShapeDtypeStruct(numbers.shape, float),))
+    return structure, tuple(functions), program
 
 
 def coordinate_model(system: Any, again: Any) -> CoordinateModel:
