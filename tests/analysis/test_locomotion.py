@@ -396,6 +396,9 @@ def test_rotors_have_the_mechanical_connection() -> None:
     np.testing.assert_allclose(connection.curvature((0.0, 0.0))[:, 0, 1], [0, 0, -ratio.prod()], rtol=0, atol=1e-15)
     assert connection.momentum_components == connection.components
     assert_keeps_momentum(connection, [0.3, -0.2, 0.5])
+    still = nh.geometric_phase(connection, lambda t: jnp.stack([jnp.cos(t), jnp.sin(t)]))  # momenta are rounding alone
+    assert np.abs(still.momentum).max() < 1e-14
+    np.testing.assert_allclose(still.configuration[-1], still.holonomy, rtol=0, atol=1e-12)
 
 
 @IN_SPACE

@@ -181,13 +181,21 @@ def _momenta(
 
 def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
     """Return by how much two motions and two area rules differ, beside the whole way; NaN if they are not finite."""
-    n, momentum = one.connection.group.point_size, np.abs(other.momentum).max(axis=0)
-    sizes, unit = np.where(momentum == 0, 1.0, momentum), np.ones_like(one.holonomy)
+    n, unit = one.connection.group.point_size, np.ones_like(one.holonomy)
     unit[:n, n:] = np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0
     ends = ((x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other))
-    pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
+    pairs = zip(*ends, (unit, _momentum_sizes(other), unit, unit), strict=True)
     gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
+
+
+def _momentum_sizes(phase: GeometricPhase) -> Float[np.ndarray, "p"]:
+    """Return the size of momenta, alike in units of the body: that of their part by the shape where they cancel."""
+    connection, momentum = phase.connection, phase.momentum
+    at, rates = connection.terms(phase.shape), np.gradient(phase.shape, phase.time, axis=0)
+    of_shape = np.einsum("tai,ti->ta", at.matrix[:, : momentum.shape[1], connection.group.dim :], rates)
+    units = at.units[0, [connection.components.index(name) for name in connection.momentum_components]]
+    return ((np.maximum(np.abs(momentum), np.abs(of_shape)) * units).max(initial=0.0) or 1.0) / units
 
 
 def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:
