@@ -172,12 +172,15 @@ class Linearization(Keeper):
         ignorable: Coordinates on which no velocity depends. They are left out, and may move; each of them has a further
             eigenvalue 0, of a map 1.
         time_step: h of a map; None of a flow.
+        rate: The largest derivative in units in which velocities have equal energy: rounding moves eigenvalues by some
+            1e-16 of it.
     """
 
     matrix: Float[np.ndarray, "d d"]
     names: tuple[str, ...]
     ignorable: tuple[str, ...]
     time_step: float | None
+    rate: float = 0.0
 
     @property
     def eigenvalues(self) -> Inexact[np.ndarray, "d"]:
@@ -263,7 +266,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     ignorable = tuple(local.names[i] for i in equations.ignorable)
     step = getattr(system, "time_step", None)
     matrix = equations.matrix if step is None else np.eye(len(names)) + equations.matrix
-    return Linearization(matrix, names, ignorable, step)
+    return Linearization(matrix, names, ignorable, step, equations.rate)
 
 
 def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
@@ -457,7 +460,8 @@ def _rates(linearization: Callable[[float], Linearization], value: float) -> tup
     r"""Return the eigenvalues at a value, of maps their logarithms, and the distance by which rounding moves each.
 
     With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for multiple ones; those
-    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985].
+    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985]. Where A
+    is rounding alone, it is $\epsilon$ times the largest derivative.
     """
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."
@@ -468,6 +472,7 @@ def _rates(linearization: Callable[[float], Linearization], value: float) -> tup
     size, most = np.linalg.norm(matrix), 2 * _SHIFT ** (1 / max(1, len(values)))
     with np.errstate(divide="ignore"):
         shift = size * np.minimum(_SHIFT / np.abs((left.conj() * right).sum(axis=0)), most)
+    shift = np.maximum(shift, _SHIFT * result.rate)
     h = result.time_step
     return (values, shift) if h is None else (np.log(values) / h, shift / np.abs(values) / h)
 

@@ -308,6 +308,17 @@ def test_a_critical_value_does_not_depend_on_the_unit_of_the_parameter(unit: flo
     assert nh.critical_values(at, (-0.2 * unit, unit), samples=4) == pytest.approx([0.37 * unit], rel=1e-12, abs=0.0)
 
 
+def test_eigenvalues_that_are_rounding_alone_never_grow() -> None:
+    """Of a car that turns: no change comes back to itself, so nothing but the largest derivative tells what is small."""
+
+    def at(speed: float) -> Linearization:
+        noise = 1e-17 * np.sin(40 * speed)
+        matrix = np.array([[0.0, 0.0, 1.0], [10 * noise, noise, 0.3 * speed], [0.0, 0.0, 0.0]])
+        return Linearization(matrix, ("phi", "psi'", "phi'"), (), None, rate=1.0)
+
+    assert len(nh.critical_values(at, (-1.3, 2.1), samples=12)) == 0
+
+
 def test_eigenvalues_that_are_zero_twice_never_grow() -> None:
     """Of a snakeboard on circles all are zero: rounding, which parts double ones by its root, is no growth."""
     board = nh.examples.snakeboard()
