@@ -460,8 +460,8 @@ def _rates(linearization: Callable[[float], Linearization], value: float) -> tup
     r"""Return the eigenvalues at a value, of maps their logarithms, and the distance by which rounding moves each.
 
     With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for multiple ones; those
-    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985]. Where A
-    is rounding alone, it is $\epsilon$ times the largest derivative.
+    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985]. Where A is
+    rounding alone it is $\epsilon$ times the largest derivative.
     """
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."

@@ -56,7 +56,7 @@ def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 def departing(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the velocities of the nodes at which steps begin."""
-    momenta, _ = in_rows(equations.momenta, motion.system, x, v, np.float64(motion.time_step))
+    momenta, _ = in_rows(equations.momenta, motion.system, x, v, motion.time_step)
     return in_rows(equations.inverse_legendre, motion.system, x, momenta)
 
 

@@ -309,7 +309,7 @@ def test_a_critical_value_does_not_depend_on_the_unit_of_the_parameter(unit: flo
 
 
 def test_eigenvalues_that_are_rounding_alone_never_grow() -> None:
-    """Of a car that turns: no change comes back to itself, so nothing but the largest derivative tells what is small."""
+    """Of a car that turns: no change comes back to itself, so only the largest derivative tells what is small."""
 
     def at(speed: float) -> Linearization:
         noise = 1e-17 * np.sin(40 * speed)

@@ -382,7 +382,7 @@ def _of_rows(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
-def in_rows(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> Any:
+def in_rows(function: Callable[..., Any], system: Any, *columns: np.ndarray | float) -> Any:
     """Call a JAX function of a system and a state with each row of the columns; a number is the same for all."""
     return in_double(_of_rows(function), system, *columns)
 
