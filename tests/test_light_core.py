@@ -41,6 +41,13 @@ def test_kernels_of_each_kind_of_motion() -> None:
     assert _printed("ways") == ALONE
 
 
+def test_members_with_numbers_of_their_own_run_from_the_library() -> None:
+    """Rows of a parameter are laid out as the library takes them: one of `a` went to numba, 5 s a process."""
+    if first_way() != "library":
+        pytest.skip("kernels run by another way")
+    assert _printed("numbers") == ["library"]
+
+
 CERTIFIED = dict.fromkeys(("branch_growth [certified]", "branches [certified]"), "certify")
 ON_JAX = ("consistency_defect", "critical_values", "equilibria [near]", "fit", "linearize", "rollout", "steer", "step")
 ASKING = dict.fromkeys((*ON_JAX, "step [flat]", "tracking_feedback"), "jax") | {"steer [ipopt]": "steer"} | CERTIFIED

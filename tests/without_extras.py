@@ -2,6 +2,7 @@
 
 python without_extras.py calls quick|all     # of each public name without a home, and of each call of the fuzzers
 python without_extras.py ways                # of each kind of motion, or how its kernels run
+python without_extras.py numbers             # of members with numbers of their own
 python without_extras.py command ARGUMENT... # run a command of `nonholo`
 """
 
@@ -37,6 +38,8 @@ class _Absent(importlib.abc.MetaPathFinder):
 
 if __name__ == "__main__":  # not where pytest looks for examples
     sys.meta_path.insert(0, _Absent())
+
+import numpy as np  # noqa: E402
 
 import nonholo as nh  # noqa: E402
 from nonholo.base.checks import MissingExtraError  # noqa: E402
@@ -111,10 +114,7 @@ def ways() -> dict[str, list[str]]:
         lambda case: case.flow,
         lambda case: nh.ensemble(case.discrete, **case.rows, **case.run, steps=STEPS),
     ]
-    run: Any = Kernel.__call__
-    ran: set[str] = set()
-    Kernel.__call__ = lambda kernel, *arguments: ran.add("library") or run(kernel, *arguments)
-    Kernel.dispatcher = property(lambda kernel: ran.add("Python") or kernel.py_func)
+    ran = _watched()
     report: dict[str, list[str]] = {}
     for kind in KINDS:
         report[kind] = []
@@ -132,6 +132,27 @@ def ways() -> dict[str, list[str]]:
     return report
 
 
+def numbers() -> list[str]:
+    """Return how kernels run where members have numbers of their own: of a sleigh, of a top, or a time step."""
+    tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+    ran, top = _watched(), nh.SuslovTop(tensor)
+    rows = {name: [0.2, 0.3] for name in ("mass", "inertia", "a", "b", "time_step")}
+    cases = [(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.1), {name: row}) for name, row in rows.items()]
+    cases += [(top, {"mass_tensor": [tensor, 2 * tensor]}), (top, {"time_step": [0.2, 0.3]})]
+    for system, parameters in cases:
+        nh.ensemble(nh.discretize(system, 0.1), restricted_velocity=(0.4, 0.9), parameters=parameters, steps=3)
+    return sorted(ran)
+
+
+def _watched() -> set[str]:
+    """Return a set that gets the ways in which kernels run from now on."""
+    run: Any = Kernel.__call__
+    ran: set[str] = set()
+    Kernel.__call__ = lambda kernel, *arguments: ran.add("library") or run(kernel, *arguments)
+    Kernel.dispatcher = property(lambda kernel: ran.add("Python") or kernel.py_func)
+    return ran
+
+
 if __name__ == "__main__":
     kind, *arguments = sys.argv[1:]
     if kind == "command":
@@ -140,7 +161,7 @@ if __name__ == "__main__":
         sys.argv[1:] = arguments
         main()
     else:
-        found = {"calls": calls, "ways": ways}[kind](*arguments)
+        found = {"calls": calls, "ways": ways, "numbers": numbers}[kind](*arguments)
         sys.stdout.write(json.dumps(found))
         sys.stdout.flush()
         os._exit(0)
