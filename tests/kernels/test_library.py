@@ -59,7 +59,6 @@ def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
     assert absent == []
 
 
-@pytest.mark.profile("routes", instead="test_calls_are_replayed_elsewhere")
 def test_three_ways_have_the_same_bits() -> None:
     """A sleigh, free and on a slope, by the library without numba, by numba, and by plain Python: the same numbers."""
     by_library, by_numba, by_python = (_ran(NONHOLO_KERNELS=way) for way in ("library", "numba", "python"))
