@@ -2,8 +2,7 @@
 
     python benchmarks/figures.py [--parts sizes tests bits tables ...] [--smoke]
 
-A part that is not named keeps its former figures, with the machine and the load at which they were taken. Figures of
-the fuzzers are those of `python tests/fuzz --json docs/figures-of-fuzz.json`.
+A part that is not named keeps its former figures, with the machine and the load at which they were taken.
 """
 
 import ast
@@ -25,14 +24,13 @@ import nonholo as nh
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "docs" / "figures.json"
-FUZZ = ROOT / "docs" / "figures-of-fuzz.json"
 PAGE = ROOT / "docs" / "project" / "figures.md"
 TIMED = small(("tables", "calls", "reading", "forces", "coordinates", "flow", "against_c"), ("calls",))
 FOLDERS = ("nonholo", "nonholo_paper", "tests", "benchmarks", "docs")
 _FAILED = "Ended with code"
+_SEED = 113020  # of the fuzzers
 ELSEWHERE = {
     "python tests/mutants.py": "errors made by hand, and the tests that notice them: hours",
-    "python tests/fuzz --json docs/figures-of-fuzz.json": "the fuzzers: an hour",
     ".ci/run --soak": "every case of every profile: hours",
     "python benchmarks/flow_bodies.py": "twelve bodies beside heyoka",
     "python benchmarks/flow_accuracy.py": "their errors against 60 digits",
@@ -112,20 +110,32 @@ def _run(arguments: list[str]) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, *arguments], cwd=ROOT, capture_output=True, text=True, check=False)  # noqa: S603
 
 
+def fuzz() -> str:
+    """Return a row for each fuzzer, with what it found and its seed."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "figures.json"
+        done = _run(["tests/fuzz", "--seed", str(_SEED), "--json", str(file)])
+        result = json.loads(file.read_text())
+    rows = [f"| {name} | {FUZZED[name](result[name])} |" for name in result]
+    ended = [f"\n{_FAILED} {done.returncode}"] * bool(done.returncode)
+    about = f"`python tests/fuzz --seed {_SEED}`; [Reliability](../reliability.md) explains the classes."
+    return "\n".join([about, "", "| fuzzer | figures |", "| --- | --- |", *rows, *ended])
+
+
 PARTS: dict[str, Callable[[], str]] = {
     "sizes": sizes,
     "tests": tests,
     "bits": bits,
     **{name: functools.partial(timed, name) for name in TIMED},
+    **small({"fuzz": fuzz}, {}),
 }
 
 
-def page(result: dict[str, Any], fuzz: dict[str, Any]) -> str:
+def page(result: dict[str, Any]) -> str:
     """Return the text of the page."""
     parts = [f"## {name.replace('_', ' ').capitalize()}\n\n{_part(name, result.get(name))}" for name in PARTS]
-    fuzzed = "\n".join(f"| {name} | {_FUZZED[name](fuzz[name]) if name in fuzz else 'not run'} |" for name in _FUZZED)
     others = "\n".join(f"| `{command}` | {about} |" for command, about in ELSEWHERE.items())
-    return _TEXT.format(parts="\n\n".join(parts), fuzz=fuzzed, others=others)
+    return _TEXT.format(parts="\n\n".join(parts), others=others)
 
 
 def _part(name: str, part: dict[str, str] | None) -> str:
@@ -172,25 +182,17 @@ def _listed(counts: dict[str, int]) -> str:
     return ", ".join(f"{count:,} {kind}" for kind, count in counts.items())
 
 
-_FUZZED = {"api": _api, "stores": _stores, "kills": _kills, "steps": _steps}
+FUZZED = {"api": _api, "stores": _stores, "kills": _kills, "steps": _steps}
 
 _TEXT = """\
 <!-- written by benchmarks/figures.py -->
 # Figures
 
-All figures of this page come from `python benchmarks/figures.py`, but for those of the fuzzers and of the last table.
-Each part names the machine and the load at which it was run; at a load above the number of cores times are too long,
-and only ratios count. [Benchmarks](../benchmarks.md) explains the tables.
+All figures of this page come from `python benchmarks/figures.py`, but for those of the last table. Each part
+names the machine and the load at which it was run; at a load above the number of cores times are too long, and only
+ratios count. [Benchmarks](../benchmarks.md) explains the tables.
 
 {parts}
-
-## Fuzz
-
-`python tests/fuzz --json docs/figures-of-fuzz.json`; [Reliability](../reliability.md) explains the classes.
-
-| fuzzer | figures |
-| --- | --- |
-{fuzz}
 
 ## Other commands
 
@@ -212,7 +214,7 @@ def main() -> None:
         print(f"{name}: {time.perf_counter() - begun:.0f} s", flush=True)
         if not SMOKE:
             DATA.write_text(json.dumps({name: result[name] for name in PARTS if name in result}, indent=1) + "\n")
-    text = page(result, json.loads(FUZZ.read_text()))
+    text = page(result)
     if SMOKE:
         print(text)
     else:

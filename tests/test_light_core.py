@@ -35,16 +35,10 @@ def _printed(*arguments: str) -> Any:
 
 
 def test_kernels_of_each_kind_of_motion() -> None:
-    """They run from the library, or as the page "What works with what" says."""
+    """They run from the library, also with rows of a parameter, or as the page "What works with what" says."""
     if first_way() != "library":
         pytest.skip("kernels run by another way")
     assert _printed("ways") == ALONE
-
-
-def test_members_with_numbers_of_their_own_run_from_the_library() -> None:
-    """Rows of a parameter are laid out as the library takes them: one of `a` went to numba, 5 s a process."""
-    if first_way() != "library":
-        pytest.skip("kernels run by another way")
     assert _printed("numbers") == ["library"]
 
 

@@ -208,12 +208,8 @@ def test_positions_alone_tell_the_first_pose() -> None:
 
 def _in_wells(power: float) -> Callable[[dict], nh.Forced]:
     """Return what makes a sleigh in a well, whose potential is a function."""
-
-    def system_of(p: dict) -> nh.Forced:
-        well = lambda g: power * p["stiffness"] * (g[0, 2] ** 2 + g[1, 2] ** 2)  # noqa: E731
-        return nh.Forced(nh.ChaplyginSleigh(1.0, 0.7, 0.0), well)
-
-    return system_of
+    body = nh.ChaplyginSleigh(1.0, 0.7, 0.0)
+    return lambda p: nh.Forced(body, lambda g: power * p["stiffness"] * (g[0, 2] ** 2 + g[1, 2] ** 2))
 
 
 @pytest.mark.profile("routes", instead="test_functions_of_a_system_are_parts_of_its_model")

@@ -172,7 +172,7 @@ def test_a_start_off_the_constraint_is_refused_with_its_member() -> None:
 
 
 # What was made for one time step knows no others.
-test_systems_without_parts_of_steps_have_no_events = refusals(
+test_events_without_parts_of_steps_are_refused = refusals(
     ({"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, "must have parts of a step"),
     ({"force": np.zeros((9, 2))}, "must have parts of a step"),
     ask=lambda given: nh.simulate(

@@ -123,8 +123,8 @@ _WRONG = (
     (1.0, 0.0, [0.0, 0.0], nh.SE(2), r"inertia=...\)` must be positive"),
 )
 # What is no measurement of a body in the plane or in space is refused in the words of the door.
-test_wrong_measurements_are_no_free_body = refusals(*_WRONG, ask=RigidBody.from_inertia)
-test_wrong_measurements_are_no_system = refusals(
+test_wrong_measurements_of_a_free_body_are_refused = refusals(*_WRONG, ask=RigidBody.from_inertia)
+test_wrong_measurements_of_a_system_are_refused = refusals(
     *_WRONG, ask=lambda *measured: LLSystem.from_inertia(*measured, annihilator=np.eye(3)[:1])
 )
 
