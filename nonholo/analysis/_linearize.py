@@ -337,18 +337,18 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
     """Return the steady motion near a state; of a map in coordinates its own, which begins at that of the flow."""
     is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
     flow: Any = system.system if is_map else system  # the map rests where the flow does
-    state = _steady_state(flow, (configuration, body_velocity))
+    state = _steady_state(flow, flow, (configuration, body_velocity))
     if is_map and np.any(body_velocity) and getattr(flow, "coordinates", ()):
-        state = _steady_state(system, state)
+        state = _steady_state(system, flow, state)
     return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
 
 
-def _steady_state(subject: Any, state: tuple[Any, Any]) -> tuple[Any, Any]:
-    """Correct a state until it is steady: each correction is the shortest one of the states that matter."""
+def _steady_state(subject: Any, flow: Any, state: tuple[Any, Any]) -> tuple[Any, Any]:
+    """Correct a state until a flow or its map is steady: each correction is the shortest of the states that matter."""
     is_rest, begin = state[1] is None or not np.any(state[1]), None
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", subject, *state)
-        equations = _equations_of(getattr(subject, "system", subject), local)
+        equations = _equations_of(flow, local)
         change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
         state = beside(-change[: local.places], -change[local.places :])
         velocity = local.state[local.places :]

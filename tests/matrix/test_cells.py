@@ -53,6 +53,7 @@ def test_ready_system(kind: str, ability: str, run_cell: Callable[[str, str], No
 @pytest.mark.parametrize(("kind", "ability"), [cell for cell in NEW if "-".join(cell) in LONG])
 def test_ready_system_in_all(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> None:
     """The same of what takes longer."""
+    compilers.release_programs()
     run_cell(kind, ability)
 
 
@@ -63,7 +64,6 @@ def run_cell(
     """Return what runs a cell."""
 
     def run(kind: str, ability: str) -> None:
-        compilers.release_programs()
         rule = CELLS[kind, ability]
         if "wide" in ALL[kind].traits:  # on every machine
             monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)

@@ -105,8 +105,8 @@ def geometric_phase(
     while True:
         edges = np.union1d(np.linspace(0.0, end, panels + 1), breaks[(breaks > 0) & (breaks < end)])
         with np.errstate(all="ignore"):  # beside singular shapes
-            fine = _displacement(connection, shape_at, edges, p)
-        gap, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine)
+            fine, sizes = _displacement(connection, shape_at, edges, p)
+        gap, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine, sizes)
         if gap < _AGREED and inside < _AGREED:
             return fine
         if panels == _MOST:
@@ -114,8 +114,10 @@ def geometric_phase(
         panels, coarse = 2 * panels, fine
 
 
-def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: Array) -> GeometricPhase:
-    """Return the phase by polynomials of degree 20 in the time between edges."""
+def _displacement(
+    connection: LocalConnection, shape_at: Any, edges: Array, p: Array
+) -> tuple[GeometricPhase, Float[np.ndarray, "p"]]:
+    """Return the phase by polynomials of degree 20 in the time between edges, and the sizes of its momenta."""
     h = np.diff(edges)
     time = edges[:-1, None] + h[:, None] * _NODES
     s, ds = shape_at(time[..., None])
@@ -137,7 +139,8 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     first, last = (shape_at(edges[[i], None])[0][0] for i in (0, -1))
     times = np.concatenate([edges[:1], time.ravel(), edges[-1:]])
     columns = heading, whole(p, momentum, p_end), holonomy, group.exp(area)
-    return GeometricPhase(connection, times, whole(first, s, last), g, *columns)
+    phase = GeometricPhase(connection, times, whole(first, s, last), g, *columns)
+    return phase, _momentum_sizes(connection, at, ds, phase.momentum)
 
 
 def _poses(
@@ -179,23 +182,24 @@ def _momenta(
     return momenta, p
 
 
-def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
+def _distances(one: GeometricPhase, other: GeometricPhase, sizes: Float[np.ndarray, "p"]) -> tuple[float, float]:
     """Return by how much two motions and two area rules differ, beside the whole way; NaN if they are not finite."""
     n, unit = one.connection.group.point_size, np.ones_like(one.holonomy)
     unit[:n, n:] = np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0
     ends = ((x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other))
-    pairs = zip(*ends, (unit, _momentum_sizes(other), unit, unit), strict=True)
+    pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
     gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
 
 
-def _momentum_sizes(phase: GeometricPhase) -> Float[np.ndarray, "p"]:
+def _momentum_sizes(
+    connection: LocalConnection, at: _equations.Terms, ds: Array, momentum: Float[np.ndarray, "T p"]
+) -> Float[np.ndarray, "p"]:
     """Return the size of momenta, alike in units of the body: that of their part by the shape where they cancel."""
-    connection, momentum = phase.connection, phase.momentum
-    at, rates = connection.terms(phase.shape), np.gradient(phase.shape, phase.time, axis=0)
-    of_shape = np.einsum("tai,ti->ta", at.matrix[:, : momentum.shape[1], connection.group.dim :], rates)
-    units = at.units[0, [connection.components.index(name) for name in connection.momentum_components]]
-    return ((np.maximum(np.abs(momentum), np.abs(of_shape)) * units).max(initial=0.0) or 1.0) / units
+    of_shape = np.einsum("tkai,tki->tka", at.matrix[..., : momentum.shape[1], connection.group.dim :], ds)
+    units = at.units[0, 0, [connection.components.index(name) for name in connection.momentum_components]]
+    largest = (np.abs(part * units).max(initial=0.0) for part in (momentum, of_shape))
+    return (max(largest) or 1.0) / units
 
 
 def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:

@@ -203,8 +203,8 @@ class ScalarMembers:
         turn = np.zeros((1, 4)) if axes.frame is None else axes.turns[1].reshape(-1, 4)
         parts = self.scale[:, None], back.reshape(-1, 4), C.swapaxes(1, 2).reshape(-1, 4), turn
         count = max(map(len, parts))
-        numbers = np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
-        numbers = np.ascontiguousarray(numbers)  # as the library takes it
+        columns = np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
+        numbers = np.ascontiguousarray(columns)  # as the library takes it
         space = 0 if axes.frame is None else 3 if axes.group.curvature else 2
         return kernels.MemberAxes(numbers, axes.rows is not None, space)
 
