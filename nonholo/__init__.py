@@ -127,7 +127,7 @@ Gaits, the geometry of locomotion:
 
 Derivatives, measured motion, control:
     rollout: Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
-    fit: Fit the numbers of a body to recorded motion, and the start of each trial with them.
+    fit: Fit the parameters of a body, and the start of each trial, to recorded motion.
     steer: Find forces along the constraint that take a body from a start to a goal with little effort.
     tracking_feedback: Make the linear feedback along an orbit that spends least on errors and on forces together (LQR).
 

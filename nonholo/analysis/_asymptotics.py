@@ -176,7 +176,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     system = subject if orbit is None else orbit.system
     refuse_forces("asymptotics(subject=...)", system)
     if isinstance(subject, Orbit) and subject.has_impacts.any():
-        raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Ask it of the system.")
+        raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Pass the system.")
     form = getattr(system, "normal_form", None)
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."

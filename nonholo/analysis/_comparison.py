@@ -224,7 +224,7 @@ def _check_alike(orbit: AbstractOrbit, flow: AbstractOrbit) -> None:
     else:
         is_alike = have_same_rows(*systems)
     if not is_alike:
-        remedy = "Momenta along different directions are no two values of one thing."
+        remedy = "Momenta along different directions cannot be compared."
         raise error(where, "have the constraint of the orbit", "another constraint", remedy)
 
 

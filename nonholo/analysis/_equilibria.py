@@ -67,8 +67,8 @@ def equilibria(
     $|\mu| < 1$ for every step; $\mu < 0$, an alternating approach, for large ones.
 
     With `configuration`, of any system, or its map: the state of rest near it, or the steady motion near a velocity, by
-    Newton's method. Such states come in families, of as many directions as there are constraints, ignorable coordinates
-    and conserved momenta; each correction is the shortest one. On a group the body velocity stays. Steady motions of a
+    Newton's method. Such states form families, with one direction for each constraint, ignorable coordinate and
+    conserved momentum; each correction is the shortest one. On a group the body velocity stays. Steady motions of a
     map in coordinates are its own: where the motion turns they differ from those of the flow by the step squared.
 
     Reference: [fedorov-zenkov-2004], sections 6 and 7, "stationary solutions".

@@ -222,7 +222,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     velocities; the constraints $A v = b$ give the others. Coordinates that no equation contains, such as the place and
     the heading of a vehicle on a plane, are left out: they may move, all others and the independent velocities have to
     be constant. On a group z has the momenta along the constraint, $r = S\,\mathbb{I}\omega$, and where forces depend
-    on the pose $\xi$ of $g\,e^\xi$, seen from a body that moves on steadily. So a top in steady precession is, too.
+    on the pose $\xi$ of $g\,e^\xi$, seen from a body that moves on steadily. So a top in steady precession counts.
 
     Derivatives are exact, by JAX; those of forces and potentials that are functions, on groups, are central
     differences of order 6. Dependences are seen at the state and three more, up to 1e-11 of the largest
@@ -378,7 +378,7 @@ def _equations_of(flow: Any, local: Local) -> Reduced:
     equations = reduced(local)
     if getattr(flow, "is_driven", False) and flow.dimension in equations.states:
         remedy = "Prescribed motions and forces of the time drive it: leave them out."
-        raise error(_NEAR, "be near a steady motion", "equations of the time", remedy)
+        raise error(_NEAR, "be near a steady motion", "equations that depend on time", remedy)
     return equations
 
 
@@ -545,7 +545,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     discrete, system = orbit.motion, orbit.system
     refuse_slip(_WHERE, system)
     if orbit.has_impacts.any():
-        raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
+        raise error(_WHERE, "have no impacts", "some", "Pass the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow):
         if system.is_spatial or system.is_forced:
             return _motions(_WHERE).along_flow(orbit)

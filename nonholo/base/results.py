@@ -83,7 +83,7 @@ _MESSAGES = {
     Outcome.branch_unverified: (
         "A root was found, but it could not be verified as the root that the branch rule selects: it lies on another "
         "branch, it ties with one, or the path to it runs through a singular point. Try a smaller time_step. "
-        "From a displacement off the principal branch branch='nearest' continues."
+        "branch='nearest' continues a run off the principal branch."
     ),
     Outcome.not_converged: (
         "The iteration for the next state did not converge, though no fold was met. "
@@ -94,8 +94,8 @@ _MESSAGES = {
         "Pass its components along the constraint subspace instead, or a momentum made by discrete_legendre."
     ),
     Outcome.nonfinite: (
-        "A number overflowed or became undefined, or a force or potential returned one that is; or a pose left its "
-        "group, as those that grow do by rounding. Try a smaller time_step, a shorter run or other units."
+        "A number overflowed or became undefined, or a force or potential returned one that is; or rounding moved a "
+        "growing pose off its group. Try a smaller time_step, a shorter run or other units."
     ),
     Outcome.no_half_impulse: (
         "The implicit equation for the half impulse of the force has no solution: the force at the velocity in the "
@@ -109,8 +109,8 @@ _MESSAGES = {
     ),
     Outcome.too_stiff: (
         "The steps of the solver became too short to come to an end: the force changes much faster than the motion, as "
-        "strong friction does, or it jumps again and again. Try `simulate`, for which `Friction` is exact at any "
-        "time_step, a smoother force, a shorter time or a larger rtol."
+        "strong friction does, or it jumps again and again. Try `simulate` with Forced(..., scheme='variational'), in "
+        "which `Friction` is exact at any time_step, a smoother force, a shorter time or a larger rtol."
     ),
 }
 

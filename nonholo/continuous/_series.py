@@ -361,6 +361,7 @@ def flow_tangents(
         parts = np.eye(k).ravel(), np.zeros(0), r / unit
         (tangents, *_), _ = solve_series(f, parts, np.array([0.0, step * unit]), _TOLERANCE * GUARD)
         if len(tangents) < 2:
-            raise error(where, "be of a motion that can be integrated", f"none from state {j}", "Ask for closer times.")
+            got = f"a failure at state {j}"
+            raise error(where, "have steps that the series can integrate", got, "Pass closer times.")
         out[j] = tangents[1].reshape(k, k) * (sizes[:, None] / sizes)
     return out

@@ -91,7 +91,7 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
         for dimension in dimensions:
             array_name(where, dimension)
         if len(set(dimensions)) < len(dimensions):
-            raise error(where, "name each axis otherwise", shown(dimensions), "Name them apart.")
+            raise error(where, "have a different name for each axis", shown(dimensions), "Rename one.")
         for dimension, length in zip(dimensions, shape, strict=True):
             if lengths.setdefault(dimension, length) != length:
                 got = f"{length} where it was {lengths[dimension]}"

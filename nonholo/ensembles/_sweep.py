@@ -145,10 +145,10 @@ def resume(
             store cannot hold. Another one than that of the store is refused; in coordinates its last saved states,
             computed again, must have the bits of the store.
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
-            functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
+            functions. Other events raise an error. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
-        members: How many members a random design is to have, more than it has: it grows by those that are missing, in
-            blocks as large as before. Those that are there stay; the result has the bits of a sweep of all of them.
+        members: The new, larger number of members of a random design. The missing members are added in blocks of the
+            same size, the others stay; the result has the bits of a sweep of all of them.
         trust: Import those functions by the names that the store gives. They run with your rights: name only
             functions of a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.

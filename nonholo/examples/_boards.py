@@ -328,7 +328,7 @@ def snake(
     """
     q, a, half = place, np.asarray(joints), half_length
     if not (np.abs(a) < np.pi).all() or abs(a[0] - a[1]) < 1e-6:
-        where, remedy = "examples.snake(joints=...)", "An arc may roll at any rate: bend the joints differently."
+        where, remedy = "examples.snake(joints=...)", "Equal angles leave the rate of rolling free: pass others."
         raise error(where, "differ and be between -pi and pi", str(a.tolist()), remedy)
     sign = np.array([1.0, -1.0])
     rows = np.stack([sign * np.sin(a), -sign * half * (1 + np.cos(a))], axis=1)

@@ -219,8 +219,8 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     """
     any_orbit("save_orbit(orbit=...)", orbit)
     if orbit.is_discrete and orbit.has_impacts.any():
-        got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
-        raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
+        remedy = "Run with store=..., which saves them, or save a part of the orbit."
+        raise error("save_orbit(orbit=...)", "have no impacts, which only its events record", "some", remedy)
     flags("save_orbit", overwrite=overwrite)
     path = checked_path("save_orbit(path=...)", path)
     with new_store(path, overwrite=overwrite) as part:

@@ -95,7 +95,7 @@ def changes(orbit: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
     if orbit.has_impacts.any():
-        raise error(where, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
+        raise error(where, "have no impacts", "some", "Pass the part of the orbit before the first one.")
     if orbit.is_discrete and not orbit.has_every_step:
         raise error(where, "have all states of the run", f"{len(orbit)} of them", "Run with save_every=1.")
     if not len(orbit):

@@ -294,7 +294,7 @@ class AbstractOrbit(Keeper, abc.ABC):
             got = "others, under a force for each step"
             raise error(where, "have states at steps of one run, in their order", got, remedy)
         size = sum(each.nbytes for each in self.rows().values()) / len(self)
-        within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
+        within_memory(where, 2.0 * size * gaps.sum(), "Pass a part of the orbit.")
         last, parts = self.chosen(slice(0, -1)), []
         for count in range(1, gaps.max(initial=1)):
             last, gaps = last.chosen(gaps > count), gaps[gaps > count]

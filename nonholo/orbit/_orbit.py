@@ -86,7 +86,7 @@ class AbstractMotion(Keeper, abc.ABC):
 
     def at(self, states: "Orbit", times: Any) -> "Orbit":
         """Return the states at any times in between, where they are known."""
-        got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
+        got = f"a discrete orbit of {len(states)} states, and times {shown(times)}"
         raise error("Orbit.at(...)", "be called on a flow", got, "Slice the orbit, or run with another time step.")
 
     def work(self, states: "Orbit", forced: Any) -> Float[np.ndarray, "K"]:

@@ -20,7 +20,8 @@ def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
     by_name = checked_events(owner, events)
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
-        raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
+        demand = "be left out where a part of a step is not defined"
+        raise error(f"{owner}(events=...)", demand, stepper.part_refused, remedy)
     watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_step, stepper))
     if has_resets(by_name):
         _check_walls(owner, stepper, by_name)

@@ -17,11 +17,11 @@ from nonholo.base.checks import (
     assign,
     checked_name,
     choice,
+    count,
     error,
     function,
     instance,
     is_name,
-    natural,
     number,
     shown,
 )
@@ -83,7 +83,7 @@ class Impact:
     def __post_init__(self) -> None:
         bounce = number("Impact(restitution=...)", self.restitution)
         if not 0 <= bounce <= 1:
-            remedy = "1 conserves the energy, 0 loses most of it."
+            remedy = "1 conserves the energy, 0 removes the normal velocity."
             raise error("Impact(restitution=...)", "lie between 0 and 1", f"{bounce}", remedy)
         assign(self, restitution=float(bounce))
         if self.normal is None or callable(self.normal):
@@ -207,8 +207,8 @@ class Event:
 
     With $f_k$ its value at state k, the motion crosses in the step from k to k + 1 if $f_k \ne 0$ and $f_{k+1}$ has
     another sign. So a zero exactly at a state counts once, when it is reached; a motion that stays at zero or starts
-    there does not cross, and one that only touches zero at a state does. Two crossings in one step cannot be seen. A
-    jump counts too: write sin(angle), not the angle modulo 2 pi; one of an impact does not.
+    there does not cross, and a motion that only touches zero at a state crosses. Two crossings in one step cannot be
+    seen. A jump counts too: write sin(angle), not the angle modulo 2 pi; one of an impact does not.
 
     Attributes:
         function: Takes an `Orbit` with any number of states, with all its quantities, and returns one real number for
@@ -246,7 +246,7 @@ class Event:
         if self.name is not None:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):
-            natural("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
+            count("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
         if self.reset is not None:
             instance("Event(reset=...)", self.reset, Impact, "be an impact", "Pass Impact(), or leave it out.")
 
@@ -283,12 +283,12 @@ def _name_of(function: Callable[..., Any], position: int) -> str:
 
 def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarray, "K"]:
     """Return the values of an event at states, refused with the reason if they are not one real number for each."""
-    where, count = f"Event(function=...) of {name!r}", len(states)
+    where, size = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."
     try:
         values = call(where, event.function, states)
     except Exception as failure:
-        got = f"{type(failure).__name__}: {failure}"
-        raise error(where, f"take an orbit of {count} states", got, remedy) from failure
-    words = f"one real number for each of {count} states", remedy
-    return check_result(where, event.function, values, (count,), words, lambda at: f"time {states.time[at]:.17g}")
+        got = f"{type(failure).__name__}: {str(failure).rstrip('.')}"
+        raise error(where, f"take an orbit of {size} states", got, remedy) from failure
+    words = f"one real number for each of {size} states", remedy
+    return check_result(where, event.function, values, (size,), words, lambda at: f"time {states.time[at]:.17g}")

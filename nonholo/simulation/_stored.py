@@ -110,7 +110,7 @@ def _first(stream: "Stream") -> Checkpoint:
     try:
         return stream.checkpoint(0)
     except io.blocks.DamagedError as flaw:
-        remedy = "It is lost: run it again."
+        remedy = "The first state is lost: run it again."
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
 
 

@@ -514,7 +514,7 @@ def as_system(where: str, value: Any) -> "AbstractSystem":
 def refuse_forces(where: str, system: Any) -> None:
     """Refuse a system with forces where only free motions are known."""
     if getattr(system, "is_forced", False):
-        remedy = "Ask it of the system inside, or measure it on an orbit of simulate or flow."
+        remedy = "Pass the system inside, or compute the quantity from an orbit."
         raise error(where, "be a system without forces", "Forced", remedy)
 
 

@@ -129,7 +129,8 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
 
 
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
-    velocity = array(start.where, start.value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
+    remedy = "Pass finite coordinates; `vee` turns a matrix into them."
+    velocity = array(start.where, start.value, (system.group.dim,), remedy)
     momentum = system.inertia_operator.dot(velocity)  # the bits of @ in half of its time
     along = system.components_along(momentum, g)
     if start.project:

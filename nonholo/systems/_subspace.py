@@ -69,7 +69,7 @@ def independent_rows(where: str, value: Any, dim: int) -> Float[np.ndarray, "k d
 def subspace_and_annihilator(owner: str, dim: int, subspace: Any, annihilator: Any) -> tuple[Array, Array]:
     """Return both from at least one of them, checked."""
     if subspace is None and annihilator is None:
-        remedy = "The one that is left out is computed."
+        remedy = "Pass one of the two; the other is computed."
         raise error(f"{owner}(constraint_subspace=...)", "be given, or annihilator=", "neither", remedy)
     if annihilator is None:
         rows = independent_rows(f"{owner}(constraint_subspace=...)", subspace, dim)

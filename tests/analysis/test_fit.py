@@ -390,7 +390,7 @@ def test_kind_that_is_used_up_is_refused() -> None:
     record = record_of("sleigh: position, turn, rate", 1)
     for name, last in (("x", 60), ("y", 60), ("theta", 56)):
         record[name][1:last] = np.nan
-    with pytest.raises(ValueError, match=r"tell the noise of each kind.* Pass noise="):
+    with pytest.raises(ValueError, match=r"determine the noise of each kind.* Pass noise="):
         nh.fit(sleigh, record, GUESS)
     result = nh.fit(sleigh, record, GUESS, noise={"position": 0.004, "turn": 0.002})
     assert (result.outcome, result.noise["position"]) == ("converged", 0.004)

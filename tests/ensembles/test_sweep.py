@@ -206,7 +206,7 @@ test_results_that_nobody_could_open_are_refused = refusals(
     (lambda block: {"outcome": block["x"]}, "a number from -127 to 127"),
     (lambda block: {"x": block["x"]}, "a name that the design and dimensions do not have"),
     (lambda block: {"k": (("k",), block.random(2))}, "a name that the design and dimensions do not have"),
-    (lambda block: {"k": (("x",), block.random(2))}, "name each axis otherwise"),
+    (lambda block: {"k": (("x",), block.random(2))}, "have a different name for each axis"),
     (lambda block: {"k": (("c",), block.random(2)), "l": (("c",), block.random(3))}, "one length along 'c'"),
     ask=lambda returned: _swept(returned, Path()),
 )

@@ -86,7 +86,7 @@ RULES: tuple[Rule, ...] = (
         "What a prescribed motion drives has no steady motion: its equations contain the time.",
         "steady motion",
     ),
-    Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
+    Rule("fit", "particle", "A free motion does not determine the unit of mass, its only parameter.", "unit"),
 )
 
 

@@ -253,8 +253,8 @@ test_what_cannot_be_watched_is_refused = refusals(
     (lambda: nh.flow(OFFSET, **FLOW, events=[lambda o: o.displacement[:, 0, 0]]), "displacement.*needs a discrete"),
     (lambda: nh.Event(east, direction=2), "Event"),
     (lambda: nh.Event(east, direction=True), r"Event\(direction=...\)` must be one of"),
-    (lambda: nh.Event(east, stop=-1), "Event"),
     (lambda: nh.Event(east, stop=0.5), "Event"),
+    (lambda: nh.Event(east, stop=0), "positive integer"),
     (lambda: nh.crossings(circle()[::2], east), _THINNED),
     (lambda: nh.crossings(circle().chosen(np.arange(21) != 5), east), _THINNED),
 )

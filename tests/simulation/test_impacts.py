@@ -528,7 +528,7 @@ test_what_impacts_do_not_have_is_refused = refusals(
     (lambda: bounced(steps=99, events=[wall("east", (1, 0), normal=(1.0, 0.0))]), "in whose direction the function gr"),
     (lambda: nh.ensemble(PLANE, restricted_velocity=np.ones((2, 2)), steps=9, events=box()), "have no reset"),
     (lambda: bounced(MOTOR), "a force of the time"),
-    (lambda: bounced(branch="nearest"), "have parts of a step"),
+    (lambda: bounced(branch="nearest"), "be left out where a part"),
 )
 
 

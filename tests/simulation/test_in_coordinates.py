@@ -173,8 +173,8 @@ def test_a_start_off_the_constraint_is_refused_with_its_member() -> None:
 
 # What was made for one time step knows no others.
 test_events_without_parts_of_steps_are_refused = refusals(
-    ({"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, "must have parts of a step"),
-    ({"force": np.zeros((9, 2))}, "must have parts of a step"),
+    ({"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, "must be left out where a part of a step"),
+    ({"force": np.zeros((9, 2))}, "must be left out where a part of a step"),
     ask=lambda given: nh.simulate(
         nh.discretize(LagrangeDAlembert(kinetic, None, dimension=2, **given), 0.1), **THROWN, steps=5, events=[height]
     ),

@@ -101,7 +101,7 @@ class Fit:
         names = _names(tuple((name, np.shape(value)) for name, value in self.parameters.items()))
         choice("Fit.profile(name=...)", name, tuple(names))
         if self.minimum is None:
-            raise error("Fit.profile(...)", "be asked where the fit was made", "a fit from elsewhere", "Fit again.")
+            raise error("Fit.profile(...)", "be called in the process of the fit", "another process", "Fit again.")
         return profile_of(self.minimum, names.index(name), name, level)
 
     def plot(self) -> Any:
@@ -119,7 +119,7 @@ def fit(
     bounds: Any = None,
     loss: str = "linear",
 ) -> Fit:
-    r"""Fit the numbers of a body to recorded motion, and the start of each trial with them.
+    r"""Fit the parameters of a body, and the start of each trial, to recorded motion.
 
     $$ \min \sum_i \sum_k \rho\Bigl(\frac{z_{ik} - \hat z_k(\theta, g_i, w_i)}{\sigma}\Bigr),\qquad
        \sigma_a^2 = \frac{\sum_a r^2}{n_a - \mathrm{tr}_a H} $$
@@ -132,8 +132,8 @@ def fit(
 
     For small samples of a kind (seven headings) the covariance has the correction of Kenward and Roger, and the
     `degrees` of freedom of the intervals follow Satterthwaite's formula. The search uses only parameters for which
-    `system_of` returns a body. A search that is lost begins again over the first part of the record, which grows: so a
-    swing whose model has another frequency is not out of step. `Fit.outcome` records how it ended.
+    `system_of` returns a body. A failed search begins again with a short first part of the record and
+    extends it, which keeps a model of another frequency in phase. `Fit.outcome` records how it ended.
 
     A free motion does not determine the unit of mass. Fix one mass; otherwise the fit raises an error.
 
@@ -266,7 +266,7 @@ def _check_determined(estimate: Estimate, shapes: Any, count: int) -> None:
         directions = np.linalg.svd(estimate.triangle)[2]
         flat = np.abs(directions[-1] if estimate.lengths.all() else estimate.lengths == 0)[:count]
         got = ", ".join(np.array(_names(shapes))[flat > 0.1 * flat.max()]) or "a start"
-        remedy = "Fix one of them in system_of, such as a mass: a free motion does not know its unit."
+        remedy = "Fix one of them in system_of, such as a mass: a free motion does not determine the unit of mass."
         raise error(WHERE, "determine all parameters", f"none of {got} alone", remedy)
 
 
@@ -286,7 +286,7 @@ def _check_levels(search: Search, solution: Solution) -> None:
         at = int(free.argmin())
         kind, count = list(search.problem.there)[at], solution.estimate.counts[at]
         got = f"{count} numbers of {kind}, of which {free[at]:.2g} are left by the fit"
-        raise error(WHERE, "tell the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
+        raise error(WHERE, "determine the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
 
 
 def _vector(guess: Any) -> tuple[np.ndarray, Any]:

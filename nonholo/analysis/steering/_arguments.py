@@ -291,7 +291,7 @@ class Way(NamedTuple):
         hint = _checked_guess(guess, steps, n)
         if n is None:
             if not (obstacles is None and outline is None and via is None):
-                remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y are somewhere."
+                remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y have a position."
                 raise error("steer(discrete=...)", "have a position", "a system without", remedy)
             return cls(np.zeros((0, 0)), np.zeros(0), np.zeros((1, 0)), {}, hint)
         where, remedy = "steer(obstacles=...)", f"Pass centers (obstacles, {n}), and one radius or one for each."

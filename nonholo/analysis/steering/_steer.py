@@ -126,7 +126,7 @@ def steer(
         state_bounds: The least and the largest value of components of the state, by name: {"x": (0, 3), "theta": (-1,
             1)}. On groups "x", "y", "z"; "theta" in the plane, of the heading up to full turns; "restricted_velocity",
             a number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
-            each coordinate. Infinite ones bound nothing. They hold for every state, of the goal too.
+            each coordinate. Bounds may be infinite. They hold at every state, also at the goal.
         guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.
         progress: Show a progress bar of the members on standard error.
 

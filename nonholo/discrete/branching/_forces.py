@@ -268,18 +268,18 @@ class Node:
 def node_of(owner: str, discrete: Discretization, configuration: object, step: int) -> Node:
     """Return where a step under forces begins, refused where not all its values are known."""
     forced, where, group = cast(Forced, discrete.forces), f"{owner}(discrete=...)", discrete.system.group
-    demand = "act at the displacement, by the scheme 'energy'"
+    demand = "have forces that act at the displacement (scheme 'energy')"
     if forced.slips:
-        remedy = "Ask the system without them, or with all its rows."
-        raise error(where, demand, "forces of rows that yield, by which a step holds or slides", remedy)
+        remedy = "Pass the system without the Slip, or with fixed rows."
+        raise error(where, demand, "a Slip, whose rows hold or slide", remedy)
     if not discrete.is_balanced:
-        remedy = "The displacement over a kicked momentum is one of the system inside."
+        remedy = "Pass the system inside, and the momentum after the kick."
         raise error(where, demand, "forces that kick at the nodes", remedy)
     frame = frame_of(where, dataclasses.replace(discrete, system=forced.system))
     others = [each for each in forced.terms if not hasattr(each, "matrix_for")]
     if others or forced.function is not None:
         got = f"{forced.names} on a body of rank {forced.rank}"
-        remedy = "Of others the principal one is known (`simulate`)."
+        remedy = "Under other forces only the principal value is known: use `simulate`."
         raise error(where, "have forces that are rational in the coordinates of a turn", got, remedy)
     g = group.identity if configuration is None else in_group(f"{owner}(configuration=...)", group, configuration)
     return Node(discrete, frame, g, step)

@@ -212,7 +212,7 @@ def branch_rule(owner: str, branch: BranchRule) -> AbstractBranchRule:
     """Return the rule that a user names or gives as a function."""
     if callable(branch):
         return Chosen(branch)
-    remedy = "Or pass a function of the branches and the present displacement."
+    remedy = "Choose one of them, or pass a function of the branches and the present displacement."
     return _BY_NAME[choice(f"{owner}(branch=...)", branch, tuple(_BY_NAME), remedy)]
 
 

@@ -67,15 +67,15 @@ class Forced(AbstractSystem):
 
     Args:
         system: A system on a group, `LLSystem` or `LRSystem` or one of their kinds; or a `LagrangeDAlembert`, which is
-            returned with U(q) and f(time, q, v), of q.size components. One with forces takes a table besides.
+            returned with U(q) and f(time, q, v), of q.size components. A system with forces accepts only a table.
         potential: `Gravity`, `Linear`, `Spring`, or U, a function from a configuration (N, N) to a number; several are
             a tuple. The derivative of a function is taken by central differences of order 6 along the body directions;
-            their error is about 1e-13 of what U changes by over one radian or one unit of length.
+            their error is about 1e-13 of the change of U over one radian or one unit of length.
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
             whose row k acts constantly over step k: for maps only; or `Slip`, rows of the constraint that may yield:
             for flows and the scheme "energy". Time is that of the orbit, from zero. Several forces are a tuple of
-            them, such as `(Friction(...), table)`, with at most one of each kind but `Slip`. Under "energy" f is asked
-            in the middle of the step, at its mean velocity X / h.
+            them, such as `(Friction(...), table)`, with at most one of each kind but `Slip`. Under "energy" f is
+            evaluated in the middle of the step, at its mean velocity X / h.
         scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
@@ -84,11 +84,11 @@ class Forced(AbstractSystem):
     microseconds a step.
 
     Raises:
-        ValueError: A system with forces, and one that is no table; a potential or force of another kind or shape;
-            `discretize` refuses the scheme "energy" where it is not defined.
+        ValueError: The system has forces, and the new one is not a table; a potential or force of another kind or
+            shape; `discretize` refuses the scheme "energy" where it is not defined.
 
     Example:
-        A heavy top that is not let spin about its own axis:
+        A heavy top that cannot spin about its own axis:
 
         >>> top = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
         >>> heavy = nh.Forced(top, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
@@ -261,7 +261,7 @@ class Forced(AbstractSystem):
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
-            raise error("Forced(scheme='energy')", "stand around a free step that keeps its energy", got, remedy)
+            raise error("Forced(scheme='energy')", "belong to a free step that conserves energy", got, remedy)
         if self.scheme is not None or not exact:
             return self.scheme == "energy"
         return is_composition or self.rank < self.group.dim
