@@ -6,7 +6,6 @@ A value is named by a noun and a function by a verb. What stays is in `ARGUED`, 
 import ast
 import functools
 import re
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -78,10 +77,4 @@ def participles(folder: Path) -> Iterator[tuple[str, str]]:
         public = {id(part) for node in nodes_of(path) if isinstance(node, ast.ClassDef) for part in _members(node)}
         for node, name in every_name(path):
             if is_participle(name) and name.strip("_") not in ARGUED and id(node) not in public:
-                yield f"{path}:{getattr(node, 'lineno', 0)}", name
-
-
-if __name__ == "__main__":
-    lines = [" ".join(each) for folder in sys.argv[1:] or [ROOT / "nonholo"] for each in participles(Path(folder))]
-    print("\n".join(lines))  # noqa: T201
-    sys.exit(bool(lines))
+                yield f"{path.relative_to(folder.parent)}:{getattr(node, 'lineno', 0)}", name

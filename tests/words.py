@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from participles import nodes_of
+from participles import nodes_of, participles
 
 ROOT = Path(__file__).parents[1]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
@@ -71,6 +71,9 @@ def complaints(root: Path = ROOT) -> list[str]:
         f"{name}:{first + text.count(chr(10), 0, at)}: {complaint}"
         for name, first, text, wanted in checked
         for at, complaint in words(name, text, wanted, cited)
+    ] + [
+        f"{place}: {name!r} is a bare participle; name values by nouns, functions by verbs, or argue in participles.py"
+        for place, name in participles(root / "nonholo")
     ]
 
 

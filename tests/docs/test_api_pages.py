@@ -12,8 +12,9 @@ PAGES = Path(__file__).parents[2] / "docs" / "api"
 
 
 def test_pages_are_up_to_date() -> None:
-    """The pages in the repository are those that the script writes: `python docs/make_api_pages.py`."""
-    assert {path.name: path.read_text("utf-8") for path in PAGES.iterdir()} == script("docs/make_api_pages.py").pages()
+    """The pages in the repository are those that the script writes."""
+    written = {path.name: path.read_text("utf-8") for path in PAGES.iterdir()}
+    assert written == script("docs/make_api_pages.py").pages(), "run `python docs/make_api_pages.py`"
 
 
 def test_every_public_name_is_described_once() -> None:

@@ -88,7 +88,8 @@ def _contrast(color: Any, paper: Any) -> float:
 def test_every_picture_takes_the_same_keywords() -> None:
     """All functions that draw take `Look`, refuse what it does not have, and have an entry in `PICTURES`."""
     functions = {name for name in nh.plot.__all__ if inspect.isfunction(getattr(nh.plot, name))}
-    assert functions - {"overview", "animate", "sweep_map", "comparison", "convergence", "curvature"} == set(PICTURES)
+    others = {"overview", "animate", "sweep_map", "comparison", "convergence", "curvature"}
+    assert functions - others == set(PICTURES), "add the picture to PICTURES"
     for name in functions:
         assert "look" in inspect.signature(getattr(nh.plot, name)).parameters, name
     assert _titles(PICTURES["energy_error"](**dict.fromkeys(theme.Look.__annotations__)).axes) == {"Energy error"}
