@@ -1,4 +1,4 @@
-"""`python tests/participles.py [FOLDER ...]`: functions, arguments and variables that are named by a bare participle.
+"""Functions, arguments and variables that are named by a bare participle: a part of `python tests/words.py`.
 
 A value is named by a noun and a function by a verb. What stays is in `ARGUED`, with the reason.
 """
@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
 ARGUED = {
     "forced": "a system under forces, as in `nh.Forced`",
     "reduced": "the reduced momentum, of the theory",
@@ -41,7 +40,7 @@ _NOUNS = {"bleed", "bound", "breed", "feed", "need", "seed", "speed"}
 
 
 def is_participle(name: str) -> bool:
-    """Tell whether a name is one bare participle, whatever underscores stand around it."""
+    """Return whether a name is one bare participle, whatever underscores stand around it."""
     bare = name.strip("_")
     return bare not in _NOUNS and bool(_IRREGULAR.fullmatch(bare) or _REGULAR.fullmatch(bare))
 
