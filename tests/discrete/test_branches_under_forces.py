@@ -201,7 +201,7 @@ _TOP, _SLEIGH = SYSTEMS["top"], SYSTEMS["sleigh"]
 _FREE, _HEAVY = nh.RigidBody(np.diag([1.0, 2.0, 3.0])), nh.discretize(nh.Forced(_SLEIGH, weight(_SLEIGH)), 0.1)
 _WITHOUT_VALUES = (
     (nh.Forced(_TOP, weight(_TOP), scheme="variational"), "kick at the nodes"),
-    (nh.Forced(_SLEIGH, force=nh.Slip([[0.0, 0.0, 1.0]], 0.5)), "holds or slides"),
+    (nh.Forced(_SLEIGH, force=nh.Slip([[0.0, 0.0, 1.0]], 0.5)), "hold or slide"),
     (nh.Forced(_SLEIGH, nh.Spring([0.1, 0.2], [1.0, 0.0], 2.0, 0.3)), "rational"),
     (nh.Forced(_SLEIGH, force=lambda *state: -abs(state[2]) * state[2]), "rational"),
     (nh.Forced(_FREE, weight(_FREE), None, "energy"), "top or a sleigh"),

@@ -134,7 +134,7 @@ test_rules_that_members_cannot_take_are_refused = refusals(
     ({"branch": "nearest", "backend": "numba"}, r"`ensemble\(backend=\.\.\.\)` must be 'auto' or 'jax'"),
     ({"branch": "inner", "restricted_velocity": [[0.1, 0.1], [3.0, 0.0]]}, r"'inner' and an energy.*member 1\."),
     ({"branch": lambda found, _: len(found)}, r"return the index of a real branch.*member 0\."),
-    ({"branch": "nearest", "events": [lambda orbit: orbit.energy]}, "parts of a step"),
+    ({"branch": "nearest", "events": [lambda orbit: orbit.energy]}, "part of a step"),
     *(({"discrete": each, **ALONG, "branch": "nearest"}, "branch") for each in WITHOUT_RULES),
     ({"discrete": SLEIGH, **ALONG, "branch": "nearest", "steps": None, "times": (0.0, 1.0)}, "branch"),
     ask=lambda given: nh.ensemble(**{"discrete": TOP, "restricted_velocity": [[0.1, 0.1]], "steps": 3} | given),

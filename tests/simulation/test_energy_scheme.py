@@ -246,7 +246,7 @@ def test_the_scheme_is_the_one_that_is_asked_for() -> None:
         assert nh.discretize(nh.Forced(system, heavy, scheme=other), 0.1).is_balanced == (other == "energy")
     assert not nh.discretize(nh.Forced(veselova, heavy), 0.1).is_balanced
     for system in (veselova, tilted):
-        with pytest.raises(ValueError, match="keeps its energy"):
+        with pytest.raises(ValueError, match="conserves energy"):
             nh.discretize(nh.Forced(system, heavy, scheme="energy"), 0.1)
     with pytest.raises(ValueError, match="scheme"):
         nh.Forced(TOP, heavy, scheme="exact")

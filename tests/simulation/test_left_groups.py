@@ -63,7 +63,7 @@ def _twice(start: dict[str, Any]) -> dict[str, Any]:
 
 def ended(run: Any, *arguments: Any, **options: Any) -> Any:
     """Return the orbit of a flow that raises."""
-    with pytest.raises(nh.OutcomeError, match=r"nonfinite.*a pose left its group") as failure:
+    with pytest.raises(nh.OutcomeError, match=r"nonfinite.*growing pose off its group") as failure:
         run(*arguments, **options)
     return failure.value.orbit
 

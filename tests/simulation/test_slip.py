@@ -349,7 +349,7 @@ test_what_has_no_slip_is_refused = refusals(
     (lambda: nh.rollout(_MAP, body_velocity=FAST, steps=3), "never yields"),
     (lambda: nh.testing.check_system(_SLIPPING), "never yields"),
     (lambda: nh.testing.check_discretization(_MAP), "never yields"),
-    (lambda: nh.branches(_MAP, momentum=FAST), "rows that yield"),
+    (lambda: nh.branches(_MAP, momentum=FAST), "a Slip, whose rows"),
 )
 
 
