@@ -112,7 +112,6 @@ class Forced(AbstractSystem):
     potential: Any = None
     force: Any = None
     scheme: str | None = None
-    leaves: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
     structure: ClassVar[tuple[str, ...]] = ("scheme",)
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True

@@ -13,14 +13,14 @@ from nonholo.base.checks import array, assign, error, is_traced, number, shape_o
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
-from nonholo.systems._base import AbstractLLSystem, AbstractSystem, refuse_fixed_in_space
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem, AbstractTree, refuse_fixed_in_space
 from nonholo.systems._subspace import independent_rows
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Friction:
+class Friction(AbstractTree):
     r"""The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
     In steps of order 2 it never adds energy, at any step size; of higher orders see Proposition 18.5. Under the scheme
@@ -40,8 +40,6 @@ class Friction:
     """
 
     coefficients: Array
-    leaves: ClassVar[tuple[str, ...]] = ("coefficients",)
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
@@ -80,7 +78,7 @@ _IN_SPAN = 1e-10  # relative, of rows that must lie in a span
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Slip:
+class Slip(AbstractTree):
     r"""Rows of a constraint that may yield: one contact with dry and viscous friction.
 
     With the slip velocity $v = A\omega$, A the rows, and the reaction $\lambda$ in $A^T\lambda$:
@@ -121,7 +119,6 @@ class Slip:
     rows: Array
     grip: Array
     viscous: Array = 0.0
-    leaves: ClassVar[tuple[str, ...]] = ("grip", "viscous")
     structure: ClassVar[tuple[str, ...]] = ("rows",)
 
     def __post_init__(self) -> None:
@@ -179,7 +176,6 @@ class Widened(AbstractLLSystem):
     system: AbstractSystem
     rows: Float[np.ndarray, "s dim"]
     remaining: Float[np.ndarray, "j dim"]
-    leaves: ClassVar[tuple[str, ...]] = ("system",)
     structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
 
     def __post_init__(self) -> None:
