@@ -138,25 +138,21 @@ class Forced(AbstractSystem):
             else:
                 each.check(self.system.group)
         assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
-        assign(self, force=_friction.force_of(self._checked_parts()))
-
-    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
-        """Return the fields of the system with a table that comes later; other forces are refused."""
-        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
-        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
-
-    def _checked_parts(self) -> dict[str, Any]:
-        """Return what the force is made of, checked against the system."""
-        parts, inside = _friction.parts_of(self.force), self.system
+        parts, dim = _friction.parts_of(self.force), self.system.group.dim
         if "friction" in parts:
-            parts["friction"].check(inside.group.dim)
+            parts["friction"].check(dim)
         _ = self.free  # refused here where rows do not fit
         if "function" in parts:
             function("Forced(force=...)", parts["function"], "time", "configuration", "body_velocity")
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
-            parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
-        return parts
+            parts["table"] = array("Forced(force=...)", parts["table"], (None, dim), remedy)
+        assign(self, force=_friction.force_of(parts))
+
+    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
+        """Return the fields of the system with a table that comes later; other forces are refused."""
+        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
+        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
 
     @functools.cached_property
     def terms(self) -> tuple[Any, ...]:

@@ -170,13 +170,13 @@ class Widened(AbstractLLSystem):
     Attributes:
         system: The system with its whole constraint.
         rows: A, (s, dim), what may not vanish.
-        remaining: The rows of its annihilator that never yield.
+        annihilator: The rows of its annihilator that never yield.
     """
 
     system: AbstractSystem
     rows: Float[np.ndarray, "s dim"]
-    remaining: Float[np.ndarray, "j dim"]
-    structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
+    annihilator: Array = None
+    structure: ClassVar[tuple[str, ...]] = ("rows", "annihilator")
 
     def __post_init__(self) -> None:
         """Refuse a slip without inertia, as that of a rod about itself."""
@@ -194,16 +194,11 @@ class Widened(AbstractLLSystem):
     frame = property(operator.attrgetter("system.frame"))
 
     @system_memo
-    def annihilator(self) -> Float[np.ndarray, "j dim"]:
-        """The rows that never yield."""
-        return self.remaining
-
-    @system_memo
     def duals(self) -> Float[np.ndarray, "s dim"]:
         """V, the velocities of unit slips."""
         system, s = self.system, len(self.rows)
         S = np.asarray(system.constraint_subspace)
-        equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.remaining, self.rows])
+        equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.annihilator, self.rows])
         return np.linalg.solve(equations, np.eye(len(equations))[:, -s:]).T
 
     @system_memo
@@ -228,7 +223,7 @@ class Widened(AbstractLLSystem):
         if self.system.canonical is self.system:
             return self
         adjoint = self.group.adjoint(self.frame)
-        return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
+        return Widened(self.system.canonical, self.rows @ adjoint, self.annihilator @ adjoint)
 
     @system_memo
     def frame_map(self) -> Float[Array, "k k"]:

@@ -20,10 +20,6 @@ class AbstractLinear(AbstractTree, abc.ABC):
     def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
         """Return A for matrices of the group."""
 
-    @abc.abstractmethod
-    def check(self, group: AbstractMatrixGroup) -> None:
-        """Refuse a group of another size."""
-
     def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
         return (self.matrix_for(group) * configuration).sum(axis=(-2, -1))
