@@ -53,8 +53,7 @@ class ProductGroup(AbstractMatrixGroup):
     @functools.cached_property
     def basis(self) -> np.ndarray:
         """The basis of the algebra, shape (dim, N, N)."""
-        columns = np.split(np.eye(self.dim), self._cuts("dim"), axis=-1)
-        return block_diagonal([factor.hat(part) for factor, part in zip(self.factors, columns, strict=True)])
+        return self._assemble(lambda factor, part: factor.hat(part), self._vectors(np.eye(self.dim)))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""
