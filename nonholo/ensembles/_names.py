@@ -4,6 +4,7 @@ import contextlib
 import dataclasses
 import importlib
 import json
+import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
@@ -169,13 +170,11 @@ def function_from(name: str) -> Callable[..., Any]:
     module, colon, path = name.partition(":")
     if not colon:
         raise ImportError(name)
-    member: Any = importlib.import_module(module)
+    own = importlib.import_module(module)
     try:
-        for part in path.split("."):
-            member = getattr(member, part)
+        return operator.attrgetter(path)(own)
     except AttributeError as failure:
         raise ImportError(str(failure)) from failure
-    return member
 
 
 def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:

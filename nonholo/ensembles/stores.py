@@ -71,26 +71,24 @@ class Output:
         }
 
 
-class Results(NamedTuple):
-    """Arrays of a block by name, and the first few members for which the task raised, with the messages."""
-
-    arrays: dict[str, np.ndarray]
-    messages: list[tuple[Any, str]]
+Results: TypeAlias = tuple[dict[str, np.ndarray], list[tuple[Any, str]]]
+"""Arrays of a block by name, and the first few members for which the task raised, with the messages."""
 
 
 def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
     """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
     try:
-        return Results(_check(entries_of(task(block), block.count), outputs, block.count), [])
+        return _check(entries_of(task(block), block.count), outputs, block.count), []
     except Exception as failure:
         if block.count == 1:
             arrays = {name: np.full((1, *each.shape), each.fill, each.dtype) for name, each in outputs.items()}
             arrays[OUTCOME][:] = RAISED
-            return Results(arrays, [(block.first, f"{type(failure).__name__}: {failure}")])
+            return arrays, [(block.first, f"{type(failure).__name__}: {failure}")]
     middle = block.count // 2
-    halves = [attempt(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
-    arrays = {name: np.concatenate([half.arrays[name] for half in halves]) for name in outputs}
-    return Results(arrays, (halves[0].messages + halves[1].messages)[:_MOST_MESSAGES])
+    first, messages = attempt(task, block.part(0, middle), outputs)
+    second, others = attempt(task, block.part(middle, block.count), outputs)
+    arrays = {name: np.concatenate([first[name], second[name]]) for name in outputs}
+    return arrays, (messages + others)[:_MOST_MESSAGES]
 
 
 def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
