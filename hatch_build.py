@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from packaging.tags import platform_tags
 
 _ROOT = Path(__file__).parent
 _NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1", "rich>=14"]
@@ -63,7 +64,8 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
             _put(folder.glob("kernels-*"), library.cache_folder())
         if version != "editable":
             build_data["artifacts"] += [f"nonholo/kernels/{name}", "nonholo/kernels/kernels-*.wasm"]
-            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_TAGS.get(machine) or _platform()}")
+            platform = _TAGS.get(machine) or next(platform_tags())
+            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{platform}")
 
 
 @functools.cache
@@ -91,9 +93,3 @@ def _put(files: Iterable[Path], folder: Path) -> None:
         part = folder / f".{os.getpid()}.part"
         shutil.copy(file, part)
         part.replace(folder / file.name)
-
-
-def _platform() -> str:
-    from packaging.tags import platform_tags
-
-    return next(iter(platform_tags()))

@@ -343,10 +343,8 @@ def takes(function: Callable[..., Any], count: int) -> bool:
 def _binds(function: Callable[..., Any], count: int) -> bool:
     try:
         inspect.signature(function).bind(*range(count))
-    except TypeError:
-        return False
-    except ValueError:
-        return True
+    except (TypeError, ValueError) as failure:
+        return isinstance(failure, ValueError)
     return True
 
 

@@ -262,19 +262,14 @@ def new_store(path: Path, *, overwrite: bool = False, new: str | None = None) ->
 
 def _put_in_place(part: Path, target: Path, *, overwrite: bool, new: str | None) -> None:
     """Rename a complete store to its path; an older one there is replaced only if asked (see `check_target`)."""
-    if not (overwrite and target.exists()):
-        try:
-            part.rename(target)
-            return
-        except OSError:
-            check_target(target, new=new)
-            raise
-    check_target(target, overwrite=True)  # once more, after the time that writing took
+    check_target(target, overwrite=overwrite, new=new)  # once more, after the time that writing took
     old = part.with_suffix(".old")  # which remove_remains knows
-    target.rename(old)
+    if overwrite and target.exists():
+        target.rename(old)
     try:
         part.rename(target)
     except OSError:
-        old.rename(target)
+        if old.exists():
+            old.rename(target)
         raise
     shutil.rmtree(old, ignore_errors=True)
