@@ -309,7 +309,7 @@ def functions_of(store: str | Path) -> list[str]:
     return list(filter(is_own, map(str, (*single, *entry.get("reductions", [])))))
 
 
-def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
+def _restored_task(store: SweepStore, task: Any, *, trust: bool) -> Task:
     """Return the task of a store: the one that is given, or one made from its description.
 
     A function is imported by the name that the store gives only if the caller trusts it.
@@ -317,23 +317,19 @@ def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task
     if task is not None:
         _check_task(task, store.design)
         return _same_task(store, task, store.design)
-    _refuse_untrusted(store, functions_of(store.path), trust=trust)
-    entry = store.description["task"]
-    try:
-        return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
-    except (ImportError, ValueError) as failure:
-        remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
-        raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
-
-
-def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:
-    remedy = f"Pass it: nonholo.resume('{store.path}', task=...)"
-    if NO_NAME in names:
-        raise error("resume(store=...)", "be a sweep whose task can be made again", NO_NAME, f"{remedy}.")
-    if names and not trust:
+    names, remedy = functions_of(store.path), f"Pass it: nonholo.resume('{store.path}', task=...)"
+    if names and not trust and NO_NAME not in names:
         remedy += ", or trust=True (--trust) if you trust who made the store: what is named would run with your rights."
         got = f"'{store.path}', which names {', '.join(names)}"
         raise error("resume(store=...)", "name no function but the library's, unless trusted", got, remedy)
+    entry = store.description["task"]
+    try:
+        if NO_NAME in names:  # before another one is imported
+            raise ImportError(NO_NAME)
+        return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
+    except (ImportError, ValueError) as failure:
+        requirement = "be a sweep whose task can be made again"
+        raise error("resume(store=...)", requirement, f"{failure}", f"{remedy}.") from failure
 
 
 def _description(task: Any, design: Design) -> dict[str, Any]:

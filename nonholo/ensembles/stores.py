@@ -24,8 +24,7 @@ from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
 from nonholo.base.results import Outcome
-from nonholo.ensembles._entries import ABSENT, Entries, entries_of
-from nonholo.ensembles._names import OUTCOME
+from nonholo.ensembles._names import ABSENT, OUTCOME, Entries, entries_of
 from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
 
 RAISED = 100
