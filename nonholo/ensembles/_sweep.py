@@ -302,6 +302,7 @@ def _same_task(store: SweepStore, task: Any, design: Design) -> Task:
     return task
 
 
+@io.provenance.refusing_other_data("resume(store=...)", "a task of this version")
 def functions_of(store: str | Path) -> list[str]:
     """Return the names of the functions that the task of a store would import: all but those of the library."""
     entry = open_store(store).description["task"]
@@ -327,7 +328,7 @@ def _restored_task(store: SweepStore, task: Any, *, trust: bool) -> Task:
         if NO_NAME in names:  # before another one is imported
             raise ImportError(NO_NAME)
         return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
-    except (ImportError, ValueError) as failure:
+    except (AttributeError, ImportError, KeyError, TypeError, ValueError) as failure:
         requirement = "be a sweep whose task can be made again"
         raise error("resume(store=...)", requirement, f"{failure}", f"{remedy}.") from failure
 
@@ -381,7 +382,7 @@ def _task_with_poses(store: SweepStore) -> EnsembleTask:
         raise error(_CSV, "hold poses", f"'{store.path}', which holds none", remedy)
     try:
         return ensemble_task_from(entry | {"reductions": []})
-    except ValueError as failure:
+    except (AttributeError, KeyError, TypeError, ValueError) as failure:
         remedy = "nonholo.load_sweep(store) has the poses as they are kept."
         raise error(_CSV, "hold its system as data", f"'{store.path}', {str(failure).rstrip('.')}", remedy) from failure
 

@@ -19,7 +19,7 @@ from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
 from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution, checked_list
 from nonholo.io.metadata import TAKEN
-from nonholo.io.provenance import fields_of
+from nonholo.io.provenance import fields_of, refusing_other_data
 
 _COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
 _WORDS = 4  # numbers for each value of Philox's counter
@@ -177,6 +177,7 @@ def _some(design: AbstractDesign, first: Any, count: Any) -> tuple[int, int]:
 Design: TypeAlias = Grid | RandomDesign
 
 
+@refusing_other_data("load_sweep(store=...)", "a design of this version")
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
     """Return the design of a description."""
     if text["kind"] == "Grid":
@@ -186,7 +187,7 @@ def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Desi
                 remedy = "The store is damaged: copy it again from its source, or run it again."
                 raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
         return Grid(along, rng=text["seed"])
-    entries = {name: dict(entry) for name, entry in text["distributions"].items()}
+    entries = {name: {**entry} for name, entry in text["distributions"].items()}
     distributions = {name: DISTRIBUTIONS[entry.pop("kind")](**entry) for name, entry in entries.items()}
     return RandomDesign(text["members"], distributions, rng=text["seed"])
 

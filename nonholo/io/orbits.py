@@ -278,11 +278,8 @@ def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
     if "run" in (attributes := read_attributes(root)) and "outcome" not in attributes:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
-    try:
-        motion, every = restore_motion(attributes, discrete), attributes["save_every"]
-        outcome, total = Outcome[attributes["outcome"]], json.loads(attributes["arrays"])["time"][0]
-    except (KeyError, json.JSONDecodeError) as failure:
-        raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", blocks.AGAIN) from failure
+    motion, every = restore_motion(attributes, discrete), attributes["save_every"]
+    outcome, total = Outcome[attributes["outcome"]], json.loads(attributes["arrays"])["time"][0]
     store = _blocks_of(root, attributes, total)
     arrays = {name: blocks.checked_array(store, name, last=last) for name in store.arrays}
     if not last:  # whoever asks for the last block has looked at the others
@@ -360,14 +357,11 @@ class StoredPoses(NamedTuple):
 def open_poses(path: Path) -> StoredPoses:
     """Open a store, finished or not; a warning gives the length of an unfinished one."""
     attributes = read_attributes(path, where=_WHERE)
-    try:
-        shapes = json.loads(attributes["arrays"])
-        remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
-        system = system_of(attributes, _WHERE, remedy)
-        names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
-        places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
-    except KeyError as failure:
-        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
+    shapes = json.loads(attributes["arrays"])
+    remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
+    system = system_of(attributes, _WHERE, remedy)
+    names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
+    places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
     if names[1] not in places:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
