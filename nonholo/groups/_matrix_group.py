@@ -177,15 +177,6 @@ class MatrixGroup(AbstractMatrixGroup):
         xp = X.__array_namespace__()
         return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
 
-    def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
-        """Return the matrix with these rows."""
-        pose = self._pose(pose)
-        return pose.reshape(*pose.shape[:-1], self.size, self.size)
-
-    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the pose as it is: nothing is known about the nearest element."""
-        return self._pose(pose)
-
 
 def _checked_logarithm(g: np.ndarray) -> np.ndarray:
     """Return principal logarithms, NaN where the exponential does not lead back."""
