@@ -130,7 +130,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """The basis of the algebra, shape (dim, N, N)."""
     pose_size: int
     """Numbers in a compact pose."""
-    is_rigid: bool
+    is_rigid: bool = False
     """Whether the group moves the points of a body, SO(n) or SE(n)."""
     curvature: float | None = None
     """Of the surface whose motions it has: 1 of the sphere, SO(3); 0 of the plane, SE(2); None of other groups."""

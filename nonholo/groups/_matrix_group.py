@@ -5,7 +5,6 @@ Whether matrices span a Lie algebra, and one that preserves a bilinear form: the
 
 import dataclasses
 import functools
-from typing import ClassVar
 
 import numpy as np
 
@@ -69,7 +68,6 @@ class MatrixGroup(AbstractMatrixGroup):
 
     basis: Array
     form: Array | None = None
-    is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         basis = checked_basis("MatrixGroup(basis=...)", self.basis)

@@ -4,7 +4,6 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from itertools import accumulate
-from typing import ClassVar
 
 import numpy as np
 
@@ -37,7 +36,6 @@ class ProductGroup(AbstractMatrixGroup):
     """
 
     factors: tuple[AbstractMatrixGroup, ...]
-    is_rigid: ClassVar[bool] = False
 
     def __init__(self, *factors: AbstractMatrixGroup) -> None:
         wrong = [factor for factor in factors if not isinstance(factor, AbstractMatrixGroup)]

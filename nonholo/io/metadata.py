@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BaseModel, Field, Json, NonNegativeInt, Val
 
 from nonholo.base.checks import error, is_name, shown, within_memory
 from nonholo.base.results import Outcome
-from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
+from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, attribute_of, check_assertions
 from nonholo.io.provenance import attributes_of_text, problems_in
 
 _MOST, _MOST_CHUNKS, _HIGHEST = 2**53, 2**26, 9
@@ -156,11 +156,7 @@ def require_identity(path: Path, identity: str) -> None:
     Raises:
         OSError: There is another store, or none.
     """
-    try:
-        other = json.loads((path / "zarr.json").read_text())["attributes"].get("made")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        other = "none"
-    if other != identity:
+    if attribute_of(path, "made") != identity:
         reason = "Another store has taken the place of the one that was being written; nothing of it was changed"
         raise OSError(errno.ESTALE, reason, str(path))
 

@@ -14,7 +14,7 @@ import socket
 import uuid
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from filelock import FileLock, Timeout
 
@@ -196,12 +196,17 @@ def check_assertions(where: str) -> None:
         raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
 
 
-def format_of(path: str | Path) -> str | None:
-    """Return the format that a store claims to have; None if it has no readable one."""
+def attribute_of(path: str | Path, name: str) -> Any:
+    """Return an attribute that a store claims to have, unchecked; None if it has no readable one."""
     try:
-        return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
+        return json.loads((Path(path) / "zarr.json").read_text())["attributes"][name]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def format_of(path: str | Path) -> str | None:
+    """Return the format that a store claims to have; None if it has no readable one."""
+    return attribute_of(path, "format")
 
 
 def check_suffix(path: str | Path, where: str) -> None:

@@ -59,7 +59,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
 
     group: AbstractMatrixGroup
     mass_tensor: Any
-    is_spatial: ClassVar[bool]
+    is_spatial: ClassVar[bool] = False
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
     is_forced: ClassVar[bool] = False
     """Whether it is a `Forced`; questions about free motions are then refused."""
@@ -379,8 +379,6 @@ def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
 
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
-
-    is_spatial: ClassVar[bool] = False
 
     def equilibria(self) -> Equilibria:
         r"""Return the body velocities that stay constant, and the half of them that attracts.
