@@ -133,12 +133,11 @@ def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) 
     """Return the columns of `layout` by name."""
     position, turn = layout(group)
     where, turns = rows[..., : len(position)], rows[..., len(position) :]
-    variables: Variables = {}
-    if position and set(position) <= set("xyz"):
-        each = enumerate(position)
-        variables |= {name: Variable((), where[..., i], _labels("position", "length unit")) for i, name in each}
-    elif position:
-        variables["position"] = Variable(("axis",), where, _labels("position", "length unit"))
+    labels = _labels("position", "length unit")
+    if set(position) <= set("xyz"):  # or none
+        variables = {name: Variable((), where[..., i], dict(labels)) for i, name in enumerate(position)}
+    else:
+        variables = {"position": Variable(("axis",), where, labels)}
     return variables | _turn(group, turn, turns)
 
 

@@ -203,10 +203,6 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
 
-    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple["AbstractSystem", Any, Any, Any]:
-        """Return the fields of a `Forced`: the body inside, and all that acts on it by a scheme."""
-        return self, potential, force, scheme
-
     @property
     def inside(self) -> "AbstractSystem":
         """The body on which forces act: a `Forced` has it inside; the system itself where there are none."""

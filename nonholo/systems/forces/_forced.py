@@ -128,8 +128,11 @@ class Forced(AbstractSystem):
 
     def __post_init__(self) -> None:
         remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
-        system = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
-        self._hold(*system.add_forces(self.potential, self.force, self.scheme))
+        system: Any = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
+        if system.is_forced:  # a table may come later
+            refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
+            force, scheme = _friction.with_later_force(system, self.force), self.scheme or system.scheme
+            self._hold(system.system, system.potential, force, scheme)
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
@@ -148,11 +151,6 @@ class Forced(AbstractSystem):
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, dim), remedy)
         assign(self, force=_friction.force_of(parts))
-
-    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
-        """Return the fields of the system with a table that comes later; other forces are refused."""
-        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
-        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
 
     @functools.cached_property
     def terms(self) -> tuple[Any, ...]:
