@@ -23,6 +23,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
+from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
 from nonholo.ensembles._names import ABSENT, OUTCOME, Entries, entries_of
 from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
@@ -185,7 +186,7 @@ _MARK = TypeAdapter(Mark)
 
 
 @dataclasses.dataclass(frozen=True)
-class SweepStore:
+class SweepStore(Keeper):
     """A store that a sweep is written to.
 
     Attributes:
@@ -195,9 +196,6 @@ class SweepStore:
 
     path: Path
     made: str
-
-    def __reduce__(self) -> Any:
-        return SweepStore, (self.path, self.made)
 
     @functools.cached_property
     def layout(self) -> io.blocks.Layout:
@@ -228,11 +226,8 @@ class SweepStore:
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         for block in sorted(self.blocks.block_numbers()):
-            mark = None
             with contextlib.suppress(io.blocks.DamagedError):
-                mark = self.blocks.mark(block)
-            if mark is not None:
-                yield block, mark.about
+                yield block, self.blocks.mark_of(block).about
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
