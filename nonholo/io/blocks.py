@@ -208,9 +208,8 @@ ORIGIN = 16  # digits at the beginning of what identifies a store, which it keep
 
 
 class Piece(NamedTuple):
-    """A block: its number, where it lies in the arrays, its first member and how many it has."""
+    """A block: where it lies in the arrays, its first member and how many it has."""
 
-    number: int
     place: tuple[slice, ...]
     first: int
     count: int
@@ -222,7 +221,7 @@ class Layout(NamedTuple):
     Example:
         >>> layout = Layout(sizes=(3, 5), chunk=(1, 2))
         >>> layout.blocks, layout.piece(5)
-        (9, Piece(number=5, place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
+        (9, Piece(place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
     """
 
     sizes: Shape
@@ -248,7 +247,7 @@ class Layout(NamedTuple):
         ends = [min(begin + chunk, size) for begin, chunk, size in zip(begins, self.chunk, self.sizes, strict=True)]
         place = tuple(slice(begin, end) for begin, end in zip(begins, ends, strict=True))
         first = int(np.ravel_multi_index(begins, self.sizes))
-        return Piece(block, place, first, math.prod(s.stop - s.start for s in place))
+        return Piece(place, first, math.prod(s.stop - s.start for s in place))
 
 
 class BlockMark(NamedTuple):

@@ -378,13 +378,6 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     return {"time": _variable(orbit, "time")} | states | compact
 
 
-def steps_apart(orbit: Any) -> dict[str, Variable]:
-    """Return the array of the steps of an orbit that is not a whole run; empty of one that is."""
-    if np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):
-        return {}
-    return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
-
-
 def variables_of(orbit: Any) -> dict[str, Variable]:
     """Return what tables have of an orbit: all that its dataset tells, but matrices that poses by name stand for."""
     dataset: Any = orbit.to_dataset()

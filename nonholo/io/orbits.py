@@ -24,9 +24,9 @@ from nonholo.base.checks import checked_path, error, flags
 from nonholo.base.progress import go_on
 from nonholo.base.results import Outcome
 from nonholo.io import blocks
-from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of, without_padding
-from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, steps_apart, stored_variables
-from nonholo.io.metadata import read_attributes
+from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of
+from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, stored_variables
+from nonholo.io.metadata import read_attributes, require_identity
 from nonholo.io.places import WHERE, new_store, owner_of
 from nonholo.io.provenance import attributes, attributes_of_text, restore_motion, system_of
 from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan, any_orbit
@@ -132,6 +132,7 @@ class Stream:
     @functools.cached_property
     def store(self) -> blocks.BlockStore:
         """Its blocks, to be written."""
+        require_identity(self.path, self.made)
         rows = 1 + self.plan.steps // self.plan.every
         return _blocks_of(self.path, read_attributes(self.path), rows, where="resume(store=...)", is_writable=True)
 
@@ -225,7 +226,9 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     path = checked_path("save_orbit(path=...)", path)
     with new_store(path, overwrite=overwrite) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        variables = stored_variables(orbit) | steps_apart(orbit)
+        variables = stored_variables(orbit)
+        if not np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):  # not a whole run
+            variables[STEP] = Variable(("step",), orbit.step, {"long_name": "number of the step"})
         store = blocks.new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
         for block in range(store.layout.blocks):
             (rows,) = store.layout.piece(block).place
@@ -323,7 +326,9 @@ def _events(store: blocks.BlockStore, attributes: dict[str, Any], orbit: Orbit, 
     array: Any = store.log
     events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
     chunks = (blocks.checked_block(store, EVENTS, chunk, with_nan=True) for chunk in range(array.cdata_shape[0]))
-    rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
+    rows = np.concatenate([np.empty((0, array.shape[1])), *chunks])
+    step, fraction = rows[:, 1], rows[:, 2]
+    rows = rows[(step > begin) | ((step == begin) & (fraction > 0))]  # without what fills chunks, NaN
     log = log_of(rows, events, orbit, attributes.get("stopped_by"))
     lengths = [len(crossings) for crossings in log.found]
     if begin == 0 and lengths != counts:

@@ -230,8 +230,7 @@ class Forced(AbstractSystem):
     @property
     def names(self) -> str:
         """The name of the forces in errors."""
-        actions = [*self.terms, *self.parts.values()]
-        return " and ".join(map(name_of, actions))
+        return " and ".join(map(name_of, (*self.terms, *self.parts.values())))
 
     @property
     def needs_function(self) -> bool:
