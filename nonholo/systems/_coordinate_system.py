@@ -3,7 +3,6 @@
 import abc
 import importlib
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn
 
 from nonholo.base.memo import Keeper
@@ -70,7 +69,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """Whether it has its Lagrangian: one from a store need not."""
 
     description: tuple[str, dict[str, Any]] | None = None
-    parameters: Mapping[str, Any] = MappingProxyType({})
+    parameters: Mapping[str, Any]
     forced: Callable[..., Any]
     with_parameters: Callable[..., Any]
 
