@@ -69,14 +69,7 @@ from nonholo.systems.forces import (
     Widened,
     central_differences,
     force_of,
-    friction,
-    parts_of,
-    refuse_table,
-    slips_of,
     terms_of,
-    update_slope,
-    with_later_force,
-    without_slips,
 )
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
