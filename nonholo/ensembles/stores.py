@@ -232,12 +232,10 @@ class SweepStore(Keeper):
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
         _ = self.design
-        try:
+        remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
+        with io.blocks.refusing_damage(where, "be sound", self.path, remedy):
             for block in blocks:
                 self.blocks.sound(block)
-        except io.blocks.DamagedError as flaw:
-            remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
-            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
     def rows(self, name: str, piece: io.blocks.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
@@ -263,10 +261,8 @@ class SweepStore(Keeper):
 
     def _axis(self, name: str) -> np.ndarray:
         array = io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
-        try:
+        with io.blocks.refusing_damage("resume(store=...)", f"hold the axis {name}", self.path, _AGAIN):
             values = io.blocks.Chunk(self.path, name, array, (0,) * array.ndim).read()
-        except io.blocks.DamagedError as flaw:
-            raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)

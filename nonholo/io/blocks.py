@@ -173,12 +173,19 @@ class Chunk(NamedTuple):
         return block
 
 
+@contextlib.contextmanager
+def refusing_damage(where: str, requirement: str, path: Path, remedy: str = AGAIN) -> Iterator[None]:
+    """Refuse a store in which damage is found."""
+    try:
+        yield
+    except DamagedError as flaw:
+        raise error(where, requirement, f"{flaw}, in '{path}'", remedy) from None
+
+
 def checked_block(store: "BlockStore", name: str, chunk: int, *, with_nan: bool = False) -> np.ndarray:
     """Return one chunk of rows; refuse one that is missing or damaged, with its name."""
-    try:
+    with refusing_damage(WHERE, "hold sound chunks", store.path):
         return store.chunk(name, (chunk,)).read(with_nan=with_nan)
-    except DamagedError as flaw:
-        raise error(WHERE, "hold sound chunks", str(flaw), AGAIN) from None
 
 
 def checked_array(store: "BlockStore", name: str, *, last: bool) -> np.ndarray:

@@ -300,13 +300,11 @@ def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
 def _check_seals(store: blocks.BlockStore, attributes: dict[str, Any]) -> None:
     """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies at the path of another."""
     events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
-    try:
+    with blocks.refusing_damage(WHERE, "hold each chunk in its place", store.path):
         for block in range(plan_of(attributes).blocks if "run" in attributes else store.layout.blocks):
             about = store.checked_mark(block).about
             if "run" in attributes and checkpoint_of(about, events).is_last:
                 break
-    except blocks.DamagedError as flaw:
-        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{store.path}'", blocks.AGAIN) from None
 
 
 def plan_of(attributes: dict[str, Any]) -> Plan:
@@ -387,12 +385,10 @@ def open_poses(path: Path) -> StoredPoses:
 def _state_count(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
     plan, full = stream.plan, stream.finished_blocks()
-    try:
+    remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
+    with blocks.refusing_damage(_WHERE, "hold sound blocks", stream.path, remedy):
         last = stream.checkpoint(full).done
         full -= full > 0 and last != plan.stop(full - 1)  # it failed, or was extended
         for block in range(full):
             stream.sound(block)
-    except blocks.DamagedError as flaw:
-        remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
-        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return min(full * plan.rows, 1 + plan.steps // plan.every)
