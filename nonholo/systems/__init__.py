@@ -1,6 +1,6 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
-from nonholo.systems import families
+from nonholo.systems import families, forces
 from nonholo.systems._base import (
     AbstractLLSystem,
     AbstractLRSystem,
