@@ -1,19 +1,22 @@
 """The build hook: kernels that are compiled ahead go into wheels, and beside the kernels of a checkout."""
 
 import contextlib
-import functools
-import importlib.util
 import os
+import runpy
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, cast
+from types import SimpleNamespace
+from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from packaging.tags import platform_tags
 
 _ROOT = Path(__file__).parent
+# says where the library lies; the package is not there yet
+_LIBRARY = SimpleNamespace(**runpy.run_path(str(_ROOT / "nonholo" / "base" / "compiled" / "library.py")))
 _NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1", "rich>=14"]
 _TAGS = {
     "linux-x86_64": "manylinux_2_17_x86_64",
@@ -34,7 +37,7 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
 
     def dependencies(self) -> list[str]:
         """Return what compiles: nothing where the library of this text is there."""
-        library, machine = _library(), _machine()
+        library, machine = _LIBRARY, _machine()
         if not self._compiles(machine) or library.place(library.name_of_library(machine)):
             return []
         is_here = machine == library.this_machine() and machine.startswith("linux")
@@ -45,7 +48,7 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Put the library beside the kernels, compiled now unless there is one."""
-        library, machine = _library(), _machine()
+        library, machine = _LIBRARY, _machine()
         if not self._compiles(machine):
             return
         name = library.name_of_library(machine)
@@ -63,20 +66,12 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
             _put(folder.glob("kernels-*"), library.cache_folder())
         if version != "editable":
             build_data["artifacts"] += [f"nonholo/kernels/{name}", "nonholo/kernels/kernels-*.wasm"]
-            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_TAGS.get(machine) or _platform()}")
-
-
-@functools.cache
-def _library() -> Any:
-    """Return the module that says where the library lies; the package is not there yet."""
-    spec = importlib.util.spec_from_file_location("library", _ROOT / "nonholo" / "base" / "compiled" / "library.py")
-    module = importlib.util.module_from_spec(cast(Any, spec))
-    cast(Any, spec).loader.exec_module(module)
-    return module
+            platform = _TAGS.get(machine) or next(platform_tags())
+            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{platform}")
 
 
 def _machine() -> str:
-    return os.environ.get("NONHOLO_MACHINE") or _library().this_machine()
+    return os.environ.get("NONHOLO_MACHINE") or _LIBRARY.this_machine()
 
 
 def _places() -> list[str]:
@@ -91,9 +86,3 @@ def _put(files: Iterable[Path], folder: Path) -> None:
         part = folder / f".{os.getpid()}.part"
         shutil.copy(file, part)
         part.replace(folder / file.name)
-
-
-def _platform() -> str:
-    from packaging.tags import platform_tags
-
-    return next(iter(platform_tags()))

@@ -79,15 +79,13 @@ def is_traced(value: Any) -> bool:
 
 def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "Check the argument.") -> Array:
     """Return `value` as a read-only float64 array of the given shape (None: any length), finite and real."""
-    if is_traced(value):
-        if not _fits(value.shape, shape):
-            raise error(where, f"have shape {_shape_text(shape)}", f"shape {value.shape}", remedy)
-        return value
-    raw = real_or_complex(where, value, remedy)
-    if raw.dtype.kind == "c":
-        raise error(where, "be real", "complex numbers", remedy)
+    raw = value if is_traced(value) else real_or_complex(where, value, remedy)
     if raw.shape != shape and not _fits(raw.shape, shape):
         raise error(where, f"have shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
+    if is_traced(raw):
+        return raw
+    if raw.dtype.kind == "c":
+        raise error(where, "be real", "complex numbers", remedy)
     try:
         result = (raw if raw.dtype.char == "d" else _as_floats(raw)).astype(np.float64)
         if not is_moderate(result):
@@ -343,10 +341,8 @@ def takes(function: Callable[..., Any], count: int) -> bool:
 def _binds(function: Callable[..., Any], count: int) -> bool:
     try:
         inspect.signature(function).bind(*range(count))
-    except TypeError:
-        return False
-    except ValueError:
-        return True
+    except (TypeError, ValueError) as failure:
+        return isinstance(failure, ValueError)
     return True
 
 

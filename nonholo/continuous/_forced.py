@@ -42,7 +42,7 @@ from nonholo.continuous import _series
 from nonholo.continuous._series import PLANE, Covectors, Problem, Solved, States
 from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit, turned_near
-from nonholo.systems import Contacts, Forced, Mode, Widened, refuse_table
+from nonholo.systems.forces import Contacts, Forced, Mode, Widened, refuse_table
 
 Field = Callable[[float, np.ndarray], np.ndarray]
 _LOOKS = 0.25, 0.5, 0.75, 1.0  # parts of a step, at which it is seen whether a contact changes

@@ -13,8 +13,7 @@ from nonholo.base.checks import array, assign, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles import _names
-from nonholo.ensembles._entries import checked_reductions, join_results, reduced
-from nonholo.ensembles._names import function_from, function_name
+from nonholo.ensembles._names import checked_reductions, function_from, function_name, join_results, reduced
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.io.provenance import missing_part

@@ -11,8 +11,7 @@ import numpy as np
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles import _names
-from nonholo.ensembles._entries import checked_reductions, join_results, reduced
-from nonholo.ensembles._names import component_of, function_from, function_name, with_components
+from nonholo.ensembles._names import component_of, function_from, function_name, reduced, with_components
 from nonholo.ensembles._reductions import last_states
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.groups import components_of
@@ -74,7 +73,7 @@ class FamilyTask:
             "time_step": float(scale(_where("time_step"), self.time_step, "Pass a positive time step.")),
             "steps": count(_where("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
-            "reductions": checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
+            "reductions": _names.checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
             "save_every": None if every is None else count(_where("save_every"), every, "Pass steps, or None."),
         }
         vars(self).update(fields)
@@ -114,7 +113,7 @@ class FamilyTask:
             numbers = (block.first + np.array(members)).tolist()
             batch = self._ensemble([each[member][0] for member in members], starts, numbers)
             parts.append((members, reduced(_where("reductions"), batch, self.reductions, {_FINAL: _final_state})))
-        return join_results(parts)
+        return _names.join_results(parts)
 
     def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""

@@ -113,8 +113,7 @@ def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
 
 def _branch_counts(batch: Ensemble) -> Reduced:
     each = [(batch.members.of(member), r) for member, r in enumerate(batch.first_momentum)]
-    values = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
-    counts = np.array([own.real_count for own in values])
+    counts = np.array([displacements_over(one, one.system.from_canonical(r)).real_count for one, r in each])
     return {"real_branches": ((), counts, _labels("real values of the map over the first momentum", "1"))}
 
 

@@ -16,7 +16,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,15 +24,8 @@ from nonholo import io
 from nonholo.base.checks import count, error, needs, shown
 from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles.designs import block_of
-from nonholo.ensembles.stores import OUTCOMES, Mark, Results, SweepStore, Task, attempt, attributes_of, store_of
+from nonholo.ensembles.stores import OUTCOMES, Mark, SweepStore, Task, attempt, attributes_of, store_of
 from nonholo.simulation import in_one_thread
-
-
-class Work(NamedTuple):
-    """The message to a worker: everything but the task is read from the store."""
-
-    store: SweepStore
-    task: Task
 
 
 class Done(NamedTuple):
@@ -44,9 +37,9 @@ class Done(NamedTuple):
     versions: str
 
 
-def do_block(work: Work, block: int) -> Done:
-    """Make sure that a block is in the store."""
-    store = store_of(work.store)
+def do_block(sweep: SweepStore, task: Task, block: int) -> Done:
+    """Make sure that a block is in the store, from which everything but the task is read."""
+    store = store_of(sweep)
     mark = damage = None
     try:
         mark = None if store.blocks.mark(block) is None else store.blocks.sound(block).about
@@ -58,14 +51,13 @@ def do_block(work: Work, block: int) -> Done:
     members, draws = block_of(store.design, piece.first, piece.count), store.design.drawn
     outputs = {name: output for name, output in store.outputs.items() if name not in draws}
     with in_one_thread():
-        outcome = attempt(work.task, members, outputs)
-    results = Results({name: members[name] for name in draws} | outcome.arrays, outcome.messages)
+        arrays, messages = attempt(task, members, outputs)
     seconds = time.perf_counter() - begin
-    codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
+    codes, counts = np.unique(arrays[OUTCOME], return_counts=True)
     names = (OUTCOMES.get(int(code), str(code)) for code in codes)  # a task may have outcomes of its own
     outcomes = dict(zip(names, counts.tolist(), strict=True))
-    mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), results.messages)
-    store.blocks.write(block, results.arrays, mark._asdict())
+    mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), messages)
+    store.blocks.write(block, {name: members[name] for name in draws} | arrays, mark._asdict())
     return Done(block, mark, damage, io.provenance.versions_text())
 
 
@@ -74,6 +66,7 @@ def _writer() -> str:
     return f"{socket.gethostname()}:{os.getpid()}"
 
 
+Take: TypeAlias = Callable[[Done], None]
 _AHEAD = 1024  # blocks of which the scheduler knows at once
 _CONNECT = 10  # seconds
 _PAUSE = 0.02  # seconds between looks for finished blocks
@@ -113,7 +106,7 @@ def check_client(client: Any) -> None:
         raise error(_WHERE, "be a client that is connected, and not asynchronous", got, remedy)
 
 
-def do_on_cluster(work: Work, blocks: Iterator[int], scheduler: Any, take: Callable[[Done], None]) -> None:
+def do_on_cluster(work: tuple[SweepStore, Task], blocks: Iterator[int], scheduler: Any, take: Take) -> None:
     """Do every block by the scheduler at an address, or by that of a client, which stays open.
 
     A loss of the scheduler, or of workers again and again, is reported as what it is.
@@ -135,7 +128,7 @@ def do_on_cluster(work: Work, blocks: Iterator[int], scheduler: Any, take: Calla
             raise ConnectionError(f"The connection to the scheduler at {address} was lost") from None
 
 
-def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[Done], None]) -> None:
+def _do_blocks(work: tuple[SweepStore, Task], blocks: Iterator[int], client: Any, take: Take) -> None:
     """Send a new block for each that is done, so that the scheduler never knows of all."""
     import cloudpickle
 
@@ -154,26 +147,26 @@ def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[D
 
 def do_sent(work_bytes: bytes, block: int) -> Done:
     """Make sure that a block is in the store: the task of a worker."""
-    return do_block(_work_of(work_bytes), block)
+    return do_block(*_work_of(work_bytes), block)
 
 
 @functools.lru_cache(maxsize=4)
-def _work_of(work_bytes: bytes) -> Work:
+def _work_of(work_bytes: bytes) -> tuple[SweepStore, Task]:
     """Return what was sent, once it is known that this worker can import the task and sees the store."""
     worker = _writer()
     try:
-        work: Work = pickle.loads(work_bytes)  # noqa: S301
+        store, task = pickle.loads(work_bytes)  # noqa: S301
     except (ImportError, AttributeError) as failure:
         remedy = "Install its module there, or define the function in the script that calls sweep."
         raise error("sweep(task=...)", "be importable by the workers", f"{failure} ({worker})", remedy) from None
     try:
-        is_seen = attributes_of(work.store.path)["made"] == work.store.made
+        is_seen = attributes_of(store.path)["made"] == store.made
     except (OSError, ValueError):
         is_seen = False
     if not is_seen:
         message = f"The worker {worker} does not see this store: choose a path on a file system that all workers share"
-        raise FileNotFoundError(errno.ENOENT, message, str(work.store.path))
-    return work
+        raise FileNotFoundError(errno.ENOENT, message, str(store.path))
+    return store, task
 
 
 def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
@@ -206,45 +199,37 @@ def _library() -> Any:
 
 _LOCAL = ("threads", "processes", "synchronous")
 
-Take = Callable[[Done], None]
-
 
 def checked_scheduler(scheduler: Any, workers: Any) -> tuple[Any, int | None]:
     """Return the scheduler by name, address or client; one that does not answer is refused, as is a missing extra."""
     name = "threads" if scheduler is None else scheduler
-    if not (is_client(name) or (isinstance(name, str) and (name in _LOCAL or "://" in name))):
+    is_text = isinstance(name, str)
+    if is_text and name in _LOCAL:
+        return name, None if workers is None else count("sweep(workers=...)", workers, "Pass how many work at a time.")
+    if not is_client(name) and not (is_text and "://" in name):
         remedy = "Choose one of them, or leave it out for threads."
         requirement = f"be one of {', '.join(_LOCAL)} or an address tcp://host:port, or a distributed.Client"
         raise error(_WHERE, requirement, shown(scheduler), remedy)
-    if _is_remote(name):
-        if workers is not None:
-            remedy = "Leave it out: a cluster has the workers that were started for it."
-            raise error("sweep(workers=...)", "come with threads or processes", f"{shown(workers)} for {name}", remedy)
-        (check_client if is_client(name) else check_cluster)(name)
-    return name, None if workers is None else count("sweep(workers=...)", workers, "Pass how many work at a time.")
+    if workers is not None:
+        remedy = "Leave it out: a cluster has the workers that were started for it."
+        raise error("sweep(workers=...)", "come with threads or processes", f"{shown(workers)} for {name}", remedy)
+    (check_client if is_client(name) else check_cluster)(name)
+    return name, None
 
 
-def _is_remote(scheduler: Any) -> bool:
-    return is_client(scheduler) or "://" in scheduler
-
-
-def do_all(work: Work, scheduler: Any, workers: int | None, take: Take) -> None:
+def do_all(store: SweepStore, task: Task, scheduler: Any, workers: int | None, take: Take) -> None:
     """Do every block; what becomes of each is taken as soon as it is known, in the thread of the caller."""
-    blocks = iter(range(work.store.layout.blocks))
-    if _is_remote(scheduler):
-        do_on_cluster(work, blocks, scheduler, take)
-    else:
-        _here(work, blocks, scheduler, workers, take)
-
-
-def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None, take: Take) -> None:
+    blocks = iter(range(store.layout.blocks))
+    if scheduler not in _LOCAL:
+        do_on_cluster((store, task), blocks, scheduler, take)
+        return
     import dask
     from dask.system import CPU_COUNT
 
     def report(_key: Any, result: Any, *_: Any) -> None:
         take(result)
 
-    one = dask.delayed(functools.partial(do_block, work), name="block", pure=False, traverse=False)  # pyright: ignore
+    one = dask.delayed(functools.partial(do_block, store, task), name="block", pure=False, traverse=False)  # pyright: ignore
     pool: Executor | None = ThreadPoolExecutor(workers or CPU_COUNT) if scheduler == "threads" else None
     if scheduler == "processes":
         pool = ProcessPoolExecutor(workers or CPU_COUNT, multiprocessing.get_context("spawn"), _begin_worker)

@@ -14,13 +14,13 @@ import numpy as np
 import xarray
 
 from nonholo import io, simulation
-from nonholo.base.checks import checked_path, count, error, flags, shown, within_disk, within_memory
+from nonholo.base.checks import checked_path, count, error, flags, refuse_given, shown, within_disk, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.ensembles import stores
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from
 from nonholo.ensembles._names import NO_NAME, check_dimensions, differences, function_from, function_name, is_own
-from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
+from nonholo.ensembles._scheduling import Done, checked_scheduler, do_all
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions, block_of
 from nonholo.ensembles.stores import Output, SweepStore, Task, attributes_of, open_store, standing_of
@@ -95,7 +95,7 @@ def sweep(
         task = _same_task(sweep_store, task, design)
     else:
         sweep_store = _begin(task, design, store, block, scenario, progress=progress)
-    return continue_sweep(Work(sweep_store, task), name, workers, progress)
+    return continue_sweep(sweep_store, task, name, workers, progress)
 
 
 def load_sweep(store: str | Path) -> xarray.Dataset:
@@ -175,38 +175,34 @@ def resume(
     if (kind := io.places.format_of(store)) is None and store.exists():
         got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
-    if kind == io.places.SWEEP_FORMAT:
-        others, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
-    else:
-        others, owner = {"task": task, "members": members, "scheduler": scheduler, "workers": workers}, "a sweep"
-        remedy = "Leave it out for an orbit."
-    for name, value in others.items():
-        if value is not None:
-            got = f"{shown(value)} for '{store}'"
-            raise error(f"resume({name}=...)", f"come with the store of {owner}", got, remedy)
     if kind != io.places.SWEEP_FORMAT:
+        others = {"task": task, "members": members, "scheduler": scheduler, "workers": workers}
+        own = {name: (value, None) for name, value in others.items()}
+        refuse_given("resume", f"come with the store of a sweep, not '{store}'", "Leave it out for an orbit.", **own)
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
+    requirement, remedy = f"come with the store of an orbit, not '{store}'", "Pass task=..., or nothing."
+    refuse_given("resume", requirement, remedy, discrete=(discrete, None), events=(events, None))
     name, workers = checked_scheduler(scheduler, workers)
     sweep_store = open_store(store, "resume(store=...)")
-    work = Work(sweep_store, _restored_task(sweep_store, task, trust=trust))
+    task = _restored_task(sweep_store, task, trust=trust)
     if members is not None:
-        work = work._replace(store=_grow(sweep_store, members))
-    return continue_sweep(work, name, workers, progress)
+        sweep_store = _grow(sweep_store, members)
+    return continue_sweep(sweep_store, task, name, workers, progress)
 
 
-def continue_sweep(work: Work, scheduler: Any, workers: int | None, progress: bool) -> xarray.Dataset:
+def continue_sweep(
+    store: SweepStore, task: Task, scheduler: Any, workers: int | None, progress: bool
+) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
-    store = work.store
     with io.places.write_lock(store.path):
         store.prepare()
         with io.orbits.reporting_how_to_resume(store.path, "The sweep", lambda: standing_of(store.path)):
-            _complete(work, scheduler, workers, progress)
+            _complete(store, task, scheduler, workers, progress)
     return stores.opened_result(store)
 
 
-def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -> None:
+def _complete(store: SweepStore, task: Task, scheduler: Any, workers: int | None, progress: bool) -> None:
     """Do every block, tell what was damaged and who works with other versions."""
-    store = work.store
     total, count, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}
     with progress_bar("members", progress) as report:
         report(0, total)
@@ -224,7 +220,7 @@ def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -
                 ours = attributes_of(store.path)["versions"]
                 _warn(f"The store '{store.path}' was begun with {ours}, but {others}")
 
-        do_all(work, scheduler, workers, take)
+        do_all(store, task, scheduler, workers, take)
     if not store.is_finished:
         store.blocks.finish({"finished": True})
 
@@ -306,6 +302,7 @@ def _same_task(store: SweepStore, task: Any, design: Design) -> Task:
     return task
 
 
+@io.provenance.refusing_other_data("resume(store=...)", "a task of this version")
 def functions_of(store: str | Path) -> list[str]:
     """Return the names of the functions that the task of a store would import: all but those of the library."""
     entry = open_store(store).description["task"]
@@ -313,7 +310,7 @@ def functions_of(store: str | Path) -> list[str]:
     return list(filter(is_own, map(str, (*single, *entry.get("reductions", [])))))
 
 
-def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
+def _restored_task(store: SweepStore, task: Any, *, trust: bool) -> Task:
     """Return the task of a store: the one that is given, or one made from its description.
 
     A function is imported by the name that the store gives only if the caller trusts it.
@@ -321,23 +318,19 @@ def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task
     if task is not None:
         _check_task(task, store.design)
         return _same_task(store, task, store.design)
-    _refuse_untrusted(store, functions_of(store.path), trust=trust)
-    entry = store.description["task"]
-    try:
-        return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
-    except (ImportError, ValueError) as failure:
-        remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
-        raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
-
-
-def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:
-    remedy = f"Pass it: nonholo.resume('{store.path}', task=...)"
-    if NO_NAME in names:
-        raise error("resume(store=...)", "be a sweep whose task can be made again", NO_NAME, f"{remedy}.")
-    if names and not trust:
+    names, remedy = functions_of(store.path), f"Pass it: nonholo.resume('{store.path}', task=...)"
+    if names and not trust and NO_NAME not in names:
         remedy += ", or trust=True (--trust) if you trust who made the store: what is named would run with your rights."
         got = f"'{store.path}', which names {', '.join(names)}"
         raise error("resume(store=...)", "name no function but the library's, unless trusted", got, remedy)
+    entry = store.description["task"]
+    try:
+        if NO_NAME in names:  # before another one is imported
+            raise ImportError(NO_NAME)
+        return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
+    except (AttributeError, ImportError, KeyError, TypeError, ValueError) as failure:
+        requirement = "be a sweep whose task can be made again"
+        raise error("resume(store=...)", requirement, f"{failure}", f"{remedy}.") from failure
 
 
 def _description(task: Any, design: Design) -> dict[str, Any]:
@@ -389,7 +382,7 @@ def _task_with_poses(store: SweepStore) -> EnsembleTask:
         raise error(_CSV, "hold poses", f"'{store.path}', which holds none", remedy)
     try:
         return ensemble_task_from(entry | {"reductions": []})
-    except ValueError as failure:
+    except (AttributeError, KeyError, TypeError, ValueError) as failure:
         remedy = "nonholo.load_sweep(store) has the poses as they are kept."
         raise error(_CSV, "hold its system as data", f"'{store.path}', {str(failure).rstrip('.')}", remedy) from failure
 

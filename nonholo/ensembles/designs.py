@@ -19,7 +19,7 @@ from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
 from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution, checked_list
 from nonholo.io.metadata import TAKEN
-from nonholo.io.provenance import fields_of
+from nonholo.io.provenance import fields_of, refusing_other_data
 
 _COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
 _WORDS = 4  # numbers for each value of Philox's counter
@@ -40,7 +40,6 @@ def uniform_numbers(seed: int, stream: str, first: int, count: int, width: int) 
     return np.random.Generator(bits).random((count, _WORDS * rounds))[:, :width]
 
 
-_REMEDY = "Pass a dictionary of names to"
 Values = dict[str, np.ndarray]
 
 
@@ -92,9 +91,7 @@ class Grid(AbstractDesign):
 
     @refuse_former_names("Grid", seed="rng")
     def __init__(self, axes: Any, rng: int | np.random.Generator = 0) -> None:
-        if not isinstance(axes, Mapping) or not axes:
-            raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
-        names = _own_names("Grid(axes=...)", axes).items()
+        names = _own_names("Grid(axes=...)", axes, "values").items()
         axes_by_name = {name: checked_list(f"Grid({{{name!r}: ...}})", axes[key]) for name, key in names}
         sizes = {axis_dimension(name, values): len(values) for name, values in axes_by_name.items()}
         if len(sizes) < len(axes_by_name):
@@ -133,10 +130,7 @@ class RandomDesign(AbstractDesign):
 
     @refuse_former_names("RandomDesign", seed="rng")
     def __init__(self, members: int, distributions: Any, rng: int | np.random.Generator = 0) -> None:
-        if not isinstance(distributions, Mapping) or not distributions:
-            got = shown(distributions)
-            raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
-        names = _own_names("RandomDesign(distributions=...)", distributions)
+        names = _own_names("RandomDesign(distributions=...)", distributions, "distributions")
         for name, value in distributions.items():
             if not isinstance(value, AbstractDistribution):
                 remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
@@ -177,6 +171,7 @@ def _some(design: AbstractDesign, first: Any, count: Any) -> tuple[int, int]:
 Design: TypeAlias = Grid | RandomDesign
 
 
+@refusing_other_data("load_sweep(store=...)", "a design of this version")
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
     """Return the design of a description."""
     if text["kind"] == "Grid":
@@ -186,7 +181,7 @@ def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Desi
                 remedy = "The store is damaged: copy it again from its source, or run it again."
                 raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
         return Grid(along, rng=text["seed"])
-    entries = {name: dict(entry) for name, entry in text["distributions"].items()}
+    entries = {name: {**entry} for name, entry in text["distributions"].items()}
     distributions = {name: DISTRIBUTIONS[entry.pop("kind")](**entry) for name, entry in entries.items()}
     return RandomDesign(text["members"], distributions, rng=text["seed"])
 
@@ -205,8 +200,11 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
     return (axis_dimension(name, values), *(f"{name}_{axis}" for axis in range(1, values.ndim)))
 
 
-def _own_names(where: str, names: Mapping[Any, Any]) -> dict[str, str]:
-    """Return the given names by those of the result, refused if two are one."""
+def _own_names(where: str, names: Any, what: str) -> dict[str, str]:
+    """Return the given names by those of the result, refused if there are none or two are one."""
+    if not isinstance(names, Mapping) or not names:
+        remedy = f"Pass a dictionary of names to {what}."
+        raise error(where, f"be a mapping of names to {what}", shown(names), remedy)
     plain = {name: component_name(name) if isinstance(name, str) else name for name in names}
     if len(own_by_name := {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}) < len(names):
         raise error(where, "name each value once", ", ".join(names), "Leave one out.")

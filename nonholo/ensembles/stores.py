@@ -23,9 +23,9 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
+from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
-from nonholo.ensembles._entries import ABSENT, Entries, entries_of
-from nonholo.ensembles._names import OUTCOME
+from nonholo.ensembles._names import ABSENT, OUTCOME, Entries, entries_of
 from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
 
 RAISED = 100
@@ -71,26 +71,24 @@ class Output:
         }
 
 
-class Results(NamedTuple):
-    """Arrays of a block by name, and the first few members for which the task raised, with the messages."""
-
-    arrays: dict[str, np.ndarray]
-    messages: list[tuple[Any, str]]
+Results: TypeAlias = tuple[dict[str, np.ndarray], list[tuple[Any, str]]]
+"""Arrays of a block by name, and the first few members for which the task raised, with the messages."""
 
 
 def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
     """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
     try:
-        return Results(_check(entries_of(task(block), block.count), outputs, block.count), [])
+        return _check(entries_of(task(block), block.count), outputs, block.count), []
     except Exception as failure:
         if block.count == 1:
             arrays = {name: np.full((1, *each.shape), each.fill, each.dtype) for name, each in outputs.items()}
             arrays[OUTCOME][:] = RAISED
-            return Results(arrays, [(block.first, f"{type(failure).__name__}: {failure}")])
+            return arrays, [(block.first, f"{type(failure).__name__}: {failure}")]
     middle = block.count // 2
-    halves = [attempt(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
-    arrays = {name: np.concatenate([half.arrays[name] for half in halves]) for name in outputs}
-    return Results(arrays, (halves[0].messages + halves[1].messages)[:_MOST_MESSAGES])
+    first, messages = attempt(task, block.part(0, middle), outputs)
+    second, others = attempt(task, block.part(middle, block.count), outputs)
+    arrays = {name: np.concatenate([first[name], second[name]]) for name in outputs}
+    return arrays, (messages + others)[:_MOST_MESSAGES]
 
 
 def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
@@ -188,7 +186,7 @@ _MARK = TypeAdapter(Mark)
 
 
 @dataclasses.dataclass(frozen=True)
-class SweepStore:
+class SweepStore(Keeper):
     """A store that a sweep is written to.
 
     Attributes:
@@ -198,9 +196,6 @@ class SweepStore:
 
     path: Path
     made: str
-
-    def __reduce__(self) -> Any:
-        return SweepStore, (self.path, self.made)
 
     @functools.cached_property
     def layout(self) -> io.blocks.Layout:
@@ -231,21 +226,16 @@ class SweepStore:
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         for block in sorted(self.blocks.block_numbers()):
-            mark = None
             with contextlib.suppress(io.blocks.DamagedError):
-                mark = self.blocks.mark(block)
-            if mark is not None:
-                yield block, mark.about
+                yield block, self.blocks.mark_of(block).about
 
     def check(self, where: str, blocks: Iterable[int]) -> None:
         """Refuse a store of which one of these blocks, or an axis, is damaged."""
         _ = self.design
-        try:
+        remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
+        with io.blocks.refusing_damage(where, "be sound", self.path, remedy):
             for block in blocks:
                 self.blocks.sound(block)
-        except io.blocks.DamagedError as flaw:
-            remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
-            raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
     def rows(self, name: str, piece: io.blocks.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
@@ -271,10 +261,8 @@ class SweepStore:
 
     def _axis(self, name: str) -> np.ndarray:
         array = io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
-        try:
+        with io.blocks.refusing_damage("resume(store=...)", f"hold the axis {name}", self.path, _AGAIN):
             values = io.blocks.Chunk(self.path, name, array, (0,) * array.ndim).read()
-        except io.blocks.DamagedError as flaw:
-            raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)

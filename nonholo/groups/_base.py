@@ -130,7 +130,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """The basis of the algebra, shape (dim, N, N)."""
     pose_size: int
     """Numbers in a compact pose."""
-    is_rigid: bool
+    is_rigid: bool = False
     """Whether the group moves the points of a body, SO(n) or SE(n)."""
     curvature: float | None = None
     """Of the surface whose motions it has: 1 of the sphere, SO(3); 0 of the plane, SE(2); None of other groups."""
@@ -186,9 +186,10 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """Draw an element: rotations uniformly, translations from the standard normal distribution."""
         return self.exp(self._generator(rng).normal(size=self.dim))
 
-    @abc.abstractmethod
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
-        """Return the matrix of a compact pose."""
+        """Return the matrix of a compact pose: by default the one with these rows."""
+        pose = self._pose(pose)
+        return pose.reshape(*pose.shape[:-1], self.size, self.size)
 
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
         """Return the compact pose of a matrix: by default its entries row by row."""

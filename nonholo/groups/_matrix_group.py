@@ -5,7 +5,6 @@ Whether matrices span a Lie algebra, and one that preserves a bilinear form: the
 
 import dataclasses
 import functools
-from typing import ClassVar
 
 import numpy as np
 
@@ -69,7 +68,6 @@ class MatrixGroup(AbstractMatrixGroup):
 
     basis: Array
     form: Array | None = None
-    is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         basis = checked_basis("MatrixGroup(basis=...)", self.basis)
@@ -157,34 +155,22 @@ class MatrixGroup(AbstractMatrixGroup):
         g = self._matrix(g)
         xp = g.__array_namespace__()
         if self.form is not None:
-            return self._form_residual(g)
+            adjoint = self.form_adjoint(g)
+            size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, adjoint))
+            g, adjoint, eye = g / size, adjoint / other, numerics.identity_like(g) / size / other
+            K = (g - adjoint * (other / size)) / 2
+            worst = xp.maximum(abs(adjoint @ g - eye), abs(K - self.hat(self.vee(K))))
+            is_negative = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
+            return xp.where(is_negative, 2.0, xp.max(worst, axis=(-2, -1)))
         X = _checked_logarithm(g) if isinstance(g, np.ndarray) else numerics.principal_logarithm(g, _HALVINGS)
         gap = xp.max(abs(X - self.coordinates.matrix(self.coordinates.vector(X))), axis=(-2, -1))
         return xp.where(xp.isnan(gap), xp.inf, gap)
-
-    def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        xp, adjoint = g.__array_namespace__(), self.form_adjoint(g)
-        size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, adjoint))
-        g, adjoint, eye = g / size, adjoint / other, numerics.identity_like(g) / size / other
-        K = (g - adjoint * (other / size)) / 2
-        worst = xp.maximum(abs(adjoint @ g - eye), abs(K - self.hat(self.vee(K))))
-        is_negative = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
-        return xp.where(is_negative, 2.0, xp.max(worst, axis=(-2, -1)))
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest imaginary part of an eigenvalue of `hat(x)`."""
         X = self.hat(x)
         xp = X.__array_namespace__()
         return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
-
-    def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
-        """Return the matrix with these rows."""
-        pose = self._pose(pose)
-        return pose.reshape(*pose.shape[:-1], self.size, self.size)
-
-    def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
-        """Return the pose as it is: nothing is known about the nearest element."""
-        return self._pose(pose)
 
 
 def _checked_logarithm(g: np.ndarray) -> np.ndarray:

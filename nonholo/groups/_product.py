@@ -4,7 +4,6 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from itertools import accumulate
-from typing import ClassVar
 
 import numpy as np
 
@@ -37,7 +36,6 @@ class ProductGroup(AbstractMatrixGroup):
     """
 
     factors: tuple[AbstractMatrixGroup, ...]
-    is_rigid: ClassVar[bool] = False
 
     def __init__(self, *factors: AbstractMatrixGroup) -> None:
         wrong = [factor for factor in factors if not isinstance(factor, AbstractMatrixGroup)]
@@ -53,8 +51,7 @@ class ProductGroup(AbstractMatrixGroup):
     @functools.cached_property
     def basis(self) -> np.ndarray:
         """The basis of the algebra, shape (dim, N, N)."""
-        columns = np.split(np.eye(self.dim), self._cuts("dim"), axis=-1)
-        return block_diagonal([factor.hat(part) for factor, part in zip(self.factors, columns, strict=True)])
+        return self._assemble(lambda factor, part: factor.hat(part), self._vectors(np.eye(self.dim)))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""

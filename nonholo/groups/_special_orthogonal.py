@@ -227,8 +227,7 @@ class SpecialOrthogonalN(AbstractRotations, AbstractBodyGroup):
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... n n"]:
         """Return the rotation nearest to the matrix with these rows."""
-        pose = self._pose(pose)
-        return _rotations.nearest(pose.reshape(*pose.shape[:-1], self.n, self.n))
+        return _rotations.nearest(super().matrix_from_pose(pose))
 
 
 def SO(n: int) -> AbstractMatrixGroup:

@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-from typing import ClassVar
 
 import numpy as np
 
@@ -30,7 +29,6 @@ class Translations(AbstractMatrixGroup):
     """
 
     m: int
-    is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         m = count("Translations(m=...)", self.m, "Pass the number of components.")

@@ -113,7 +113,6 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
 
 
 AGAIN = "The store is damaged: copy it again from its source, or run it again."
-_NAN = "NaN"
 
 
 def opened_array(where: str, root: Path, name: str, shape: Any = None, *, is_writable: bool = False) -> zarr.Array:
@@ -164,24 +163,29 @@ class Chunk(NamedTuple):
             DamagedError: The chunk is missing or damaged.
         """
         if not self.file.is_file():
-            raise DamagedError("no such chunk")
+            raise DamagedError(f"no such chunk, {self}")
         try:
             block = np.asarray(self.array.blocks[self.index])
         except Exception as failure:
-            raise DamagedError(f"a corrupt one ({printable(str(failure))})") from failure
+            raise DamagedError(f"a corrupt one ({printable(str(failure))}), {self}") from failure
         if not with_nan and _lacks_numbers(self.name, block):
-            raise DamagedError(_NAN)
+            raise DamagedError(f"NaN, {self}")
         return block
+
+
+@contextlib.contextmanager
+def refusing_damage(where: str, requirement: str, path: Path, remedy: str = AGAIN) -> Iterator[None]:
+    """Refuse a store in which damage is found."""
+    try:
+        yield
+    except DamagedError as flaw:
+        raise error(where, requirement, f"{flaw}, in '{path}'", remedy) from None
 
 
 def checked_block(store: "BlockStore", name: str, chunk: int, *, with_nan: bool = False) -> np.ndarray:
     """Return one chunk of rows; refuse one that is missing or damaged, with its name."""
-    place = store.chunk(name, (chunk,))
-    try:
-        return place.read(with_nan=with_nan)
-    except DamagedError as wrong:
-        requirement = f"hold {place}" + (" free of NaN" if str(wrong) == _NAN else "")
-        raise error(WHERE, requirement, str(wrong), AGAIN) from None
+    with refusing_damage(WHERE, "hold sound chunks", store.path):
+        return store.chunk(name, (chunk,)).read(with_nan=with_nan)
 
 
 def checked_array(store: "BlockStore", name: str, *, last: bool) -> np.ndarray:
@@ -211,9 +215,8 @@ ORIGIN = 16  # digits at the beginning of what identifies a store, which it keep
 
 
 class Piece(NamedTuple):
-    """A block: its number, where it lies in the arrays, its first member and how many it has."""
+    """A block: where it lies in the arrays, its first member and how many it has."""
 
-    number: int
     place: tuple[slice, ...]
     first: int
     count: int
@@ -225,7 +228,7 @@ class Layout(NamedTuple):
     Example:
         >>> layout = Layout(sizes=(3, 5), chunk=(1, 2))
         >>> layout.blocks, layout.piece(5)
-        (9, Piece(number=5, place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
+        (9, Piece(place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
     """
 
     sizes: Shape
@@ -251,7 +254,7 @@ class Layout(NamedTuple):
         ends = [min(begin + chunk, size) for begin, chunk, size in zip(begins, self.chunk, self.sizes, strict=True)]
         place = tuple(slice(begin, end) for begin, end in zip(begins, ends, strict=True))
         first = int(np.ravel_multi_index(begins, self.sizes))
-        return Piece(block, place, first, math.prod(s.stop - s.start for s in place))
+        return Piece(place, first, math.prod(s.stop - s.start for s in place))
 
 
 class BlockMark(NamedTuple):
@@ -347,15 +350,13 @@ class BlockStore:
             check, _, text = file.read_text().partition(" ")
             mark = _MARK.validate_python(json.loads(text))
             mark = mark._replace(about=self.kind.validate_python(mark.about))
+            chunks = 0 if self.log is None else self.log.cdata_shape[0]
+            if check != f"{zlib.crc32(text.encode()):08x}" or mark.log[1] > chunks:
+                raise ValueError
         except FileNotFoundError:
             return None
-        except UnicodeDecodeError:
-            raise DamagedError(f"the mark {file.name} cannot be read") from None
         except (ValueError, RecursionError):
-            check, mark = "", None
-        chunks = 0 if self.log is None else self.log.cdata_shape[0]
-        if mark is None or check != f"{zlib.crc32(text.encode()):08x}" or mark.log[1] > chunks:
-            raise DamagedError(f"the mark {file.name} is damaged")
+            raise DamagedError(f"the mark {file.name} is damaged") from None
         return mark
 
     def block_numbers(self) -> set[int]:
@@ -387,10 +388,7 @@ class BlockStore:
         """
         mark = self.mark_of(block)
         for chunk in self._chunks(block, mark):
-            try:
-                chunk.read(with_nan=self.holds_nan or chunk.name == EVENTS)
-            except DamagedError as wrong:
-                raise DamagedError(f"{wrong}, {chunk}") from None
+            chunk.read(with_nan=self.holds_nan or chunk.name == EVENTS)
         self._check_seal(block, mark)
         return mark
 

@@ -137,12 +137,6 @@ def _crossings_of(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
     return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, states_again)
 
 
-def without_padding(rows: Float[np.ndarray, "D width"], after: int = 0) -> Rows:
-    """Return the rows of chunks that hold crossings, of them those after the state of a step."""
-    step, fraction = rows[:, 1], rows[:, 2]
-    return rows[np.isfinite(rows[:, 0]) & ((step > after) | ((step == after) & (fraction > 0)))]
-
-
 def events_text(events: list[dict[str, Any]]) -> str:
     """Name events with their options.
 

@@ -133,12 +133,11 @@ def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) 
     """Return the columns of `layout` by name."""
     position, turn = layout(group)
     where, turns = rows[..., : len(position)], rows[..., len(position) :]
-    variables: Variables = {}
-    if position and set(position) <= set("xyz"):
-        each = enumerate(position)
-        variables |= {name: Variable((), where[..., i], _labels("position", "length unit")) for i, name in each}
-    elif position:
-        variables["position"] = Variable(("axis",), where, _labels("position", "length unit"))
+    labels = _labels("position", "length unit")
+    if set(position) <= set("xyz"):  # or none
+        variables = {name: Variable((), where[..., i], dict(labels)) for i, name in enumerate(position)}
+    else:
+        variables = {"position": Variable(("axis",), where, labels)}
     return variables | _turn(group, turn, turns)
 
 
@@ -202,7 +201,13 @@ def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> 
     Angles are between -pi and pi, quaternions have a scalar that is not negative.
     """
     position, turn = layout(group)
-    turns = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turns(g, turn)
+    if turn == HEADING:
+        turns = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None]
+    elif turn == QUATERNION:
+        turns = quaternion_from_matrix(g[:, :3, :3])
+    else:
+        size = math.isqrt(len(turn))
+        turns = g[:, :size, :size].reshape(len(g), len(turn))
     return np.concatenate([g[:, : len(position), len(position)], turns], axis=1)
 
 
@@ -218,24 +223,22 @@ def rows_of(
     first = 0
     for time, pose, headings in _with_headings(stretches, before) if turn == HEADING else stretches:
         own_rows = slice(-first % every, None, every)
-        own = pose[own_rows]
-        place, turns = (own, own[:, :0]) if names else _places_and_turns(system, own, len(position), turn)
+        place = pose[own_rows] if names else _separate_rows_of(system, pose[own_rows], len(position), turn)
+        rows = np.concatenate([time[own_rows, None], place], axis=1)
         if turn == HEADING:
-            turns = np.asarray(headings)[own_rows, None]
+            rows[:, -1] = np.asarray(headings)[own_rows]
         if turn == QUATERNION:
-            turns = continuous(turns, None if before is None else before[:, -4:])
-        rows = np.concatenate([time[own_rows, None], place, turns], axis=1)
+            rows[:, -4:] = continuous(rows[:, -4:], None if before is None else before[:, -4:])
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
 
 
-def _places_and_turns(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return n numbers of the positions, and the turns, of poses: compact ones with the turn first, or matrices."""
+def _separate_rows_of(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> Float[np.ndarray, "R c"]:
+    """Return `separate_rows` of poses with n coordinates: compact ones with the turn first, or matrices."""
     if pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION):
         compact = poses(system, pose)
-        return compact[:, 4 - n :], compact
-    g = pose if pose.ndim == 3 else configurations(system, pose)
-    return g[:, :n, n], _turns(g, turn)
+        return np.concatenate([compact[:, 4 - n :], compact[:, : len(turn)]], axis=1)
+    return separate_rows(system.group, pose if pose.ndim == 3 else configurations(system, pose))
 
 
 def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
@@ -269,14 +272,6 @@ def _with_headings(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] |
         headings = unwrap(turns, before) if stretch.headings is None else stretch.headings
         before = headings[-1] if len(headings) else before
         yield stretch._replace(headings=headings)
-
-
-def _turns(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
-    """Return the rotations as quaternions or, row by row, as matrices."""
-    if names == QUATERNION:
-        return quaternion_from_matrix(g[:, :3, :3])
-    size = math.isqrt(len(names))
-    return g[:, :size, :size].reshape(len(g), len(names))
 
 
 def continuous(q: Float[np.ndarray, "... R 4"], before: np.ndarray | None = None) -> Float[np.ndarray, "... R 4"]:
@@ -381,13 +376,6 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
     return {"time": _variable(orbit, "time")} | states | compact
-
-
-def steps_apart(orbit: Any) -> dict[str, Variable]:
-    """Return the array of the steps of an orbit that is not a whole run; empty of one that is."""
-    if np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):
-        return {}
-    return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
 def variables_of(orbit: Any) -> dict[str, Variable]:

@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BaseModel, Field, Json, NonNegativeInt, Val
 
 from nonholo.base.checks import error, is_name, shown, within_memory
 from nonholo.base.results import Outcome
-from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
+from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, attribute_of, check_assertions
 from nonholo.io.provenance import attributes_of_text, problems_in
 
 _MOST, _MOST_CHUNKS, _HIGHEST = 2**53, 2**26, 9
@@ -65,7 +65,7 @@ class OrbitMetadata(_About):
     branch: str
     precision: str
     conventions: str
-    outcome: Literal[tuple(Outcome.__members__)] | None = None  # type: ignore[valid-type]
+    outcome: Literal[tuple(Outcome.__members__)] = None  # type: ignore[valid-type]
     run: Json[_Run] | None = None
     events: Json[list[dict[str, Any]]] | None = None
     crossings: Json[list[NonNegativeInt]] | None = None
@@ -77,6 +77,8 @@ class OrbitMetadata(_About):
             raise ValueError("arrays: must have one length, that of time")
         if "kind" not in self.motion:
             raise ValueError("motion: must have a kind")
+        if self.run is None and self.outcome is None:
+            raise ValueError("outcome: must stand in a store that was saved whole")
         return self
 
 
@@ -154,11 +156,7 @@ def require_identity(path: Path, identity: str) -> None:
     Raises:
         OSError: There is another store, or none.
     """
-    try:
-        other = json.loads((path / "zarr.json").read_text())["attributes"].get("made")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        other = "none"
-    if other != identity:
+    if attribute_of(path, "made") != identity:
         reason = "Another store has taken the place of the one that was being written; nothing of it was changed"
         raise OSError(errno.ESTALE, reason, str(path))
 
@@ -167,7 +165,8 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
     """Refuse an array that is not cut as ours are, with chunks too large for memory, or with bytes in another order."""
     remedy, (sizes, chunks) = f"The array {name} is damaged or was edited.", (array.shape, array.chunks)
     is_ours = (len(sizes) == 2 and sizes[1] >= 2) if name.startswith("run/") else len(sizes) > 0
-    if not is_ours or min(chunks) < 1 or math.prod(map(_quotient, sizes, chunks)) > _MOST_CHUNKS:
+    is_ours = is_ours and min(chunks) >= 1  # the number of chunks of zarr itself is a float
+    if not is_ours or math.prod(-(-size // chunk) for size, chunk in zip(sizes, chunks, strict=True)) > _MOST_CHUNKS:
         raise error(where, f"hold the array {name} in chunks", f"shape {sizes} in chunks of {chunks}", remedy)
     within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
     codecs: Any = array.metadata.codecs  # type: ignore[union-attr]
@@ -177,11 +176,6 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
     orders = {getattr(codec, "endian", None) for codec in codecs}
     if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)
-
-
-def _quotient(size: int, chunk: int) -> int:
-    """Return the number of chunks, of any size: that of zarr itself is a float."""
-    return -(-size // chunk)
 
 
 _READERS = {FORMAT: WHERE, SWEEP_FORMAT: "load_sweep(store=...)"}

@@ -24,9 +24,9 @@ from nonholo.base.checks import checked_path, error, flags
 from nonholo.base.progress import go_on
 from nonholo.base.results import Outcome
 from nonholo.io import blocks
-from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of, without_padding
-from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, steps_apart, stored_variables
-from nonholo.io.metadata import read_attributes
+from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of
+from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, stored_variables
+from nonholo.io.metadata import read_attributes, require_identity
 from nonholo.io.places import WHERE, new_store, owner_of
 from nonholo.io.provenance import attributes, attributes_of_text, restore_motion, system_of
 from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan, any_orbit
@@ -132,6 +132,7 @@ class Stream:
     @functools.cached_property
     def store(self) -> blocks.BlockStore:
         """Its blocks, to be written."""
+        require_identity(self.path, self.made)
         rows = 1 + self.plan.steps // self.plan.every
         return _blocks_of(self.path, read_attributes(self.path), rows, where="resume(store=...)", is_writable=True)
 
@@ -225,7 +226,9 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     path = checked_path("save_orbit(path=...)", path)
     with new_store(path, overwrite=overwrite) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        variables = stored_variables(orbit) | steps_apart(orbit)
+        variables = stored_variables(orbit)
+        if not np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):  # not a whole run
+            variables[STEP] = Variable(("step",), orbit.step, {"long_name": "number of the step"})
         store = blocks.new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
         for block in range(store.layout.blocks):
             (rows,) = store.layout.piece(block).place
@@ -278,11 +281,8 @@ def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
     if "run" in (attributes := read_attributes(root)) and "outcome" not in attributes:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
-    try:
-        motion, every = restore_motion(attributes, discrete), attributes["save_every"]
-        outcome, total = Outcome[attributes["outcome"]], json.loads(attributes["arrays"])["time"][0]
-    except (KeyError, json.JSONDecodeError) as failure:
-        raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", blocks.AGAIN) from failure
+    motion, every = restore_motion(attributes, discrete), attributes["save_every"]
+    outcome, total = Outcome[attributes["outcome"]], json.loads(attributes["arrays"])["time"][0]
     store = _blocks_of(root, attributes, total)
     arrays = {name: blocks.checked_array(store, name, last=last) for name in store.arrays}
     if not last:  # whoever asks for the last block has looked at the others
@@ -300,13 +300,11 @@ def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
 def _check_seals(store: blocks.BlockStore, attributes: dict[str, Any]) -> None:
     """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies at the path of another."""
     events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
-    try:
+    with blocks.refusing_damage(WHERE, "hold each chunk in its place", store.path):
         for block in range(plan_of(attributes).blocks if "run" in attributes else store.layout.blocks):
             about = store.checked_mark(block).about
             if "run" in attributes and checkpoint_of(about, events).is_last:
                 break
-    except blocks.DamagedError as flaw:
-        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{store.path}'", blocks.AGAIN) from None
 
 
 def plan_of(attributes: dict[str, Any]) -> Plan:
@@ -326,7 +324,9 @@ def _events(store: blocks.BlockStore, attributes: dict[str, Any], orbit: Orbit, 
     array: Any = store.log
     events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
     chunks = (blocks.checked_block(store, EVENTS, chunk, with_nan=True) for chunk in range(array.cdata_shape[0]))
-    rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
+    rows = np.concatenate([np.empty((0, array.shape[1])), *chunks])
+    step, fraction = rows[:, 1], rows[:, 2]
+    rows = rows[(step > begin) | ((step == begin) & (fraction > 0))]  # without what fills chunks, NaN
     log = log_of(rows, events, orbit, attributes.get("stopped_by"))
     lengths = [len(crossings) for crossings in log.found]
     if begin == 0 and lengths != counts:
@@ -360,14 +360,11 @@ class StoredPoses(NamedTuple):
 def open_poses(path: Path) -> StoredPoses:
     """Open a store, finished or not; a warning gives the length of an unfinished one."""
     attributes = read_attributes(path, where=_WHERE)
-    try:
-        shapes = json.loads(attributes["arrays"])
-        remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
-        system = system_of(attributes, _WHERE, remedy)
-        names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
-        places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
-    except KeyError as failure:
-        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
+    shapes = json.loads(attributes["arrays"])
+    remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
+    system = system_of(attributes, _WHERE, remedy)
+    names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
+    places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
     if names[1] not in places:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
@@ -388,12 +385,10 @@ def open_poses(path: Path) -> StoredPoses:
 def _state_count(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
     plan, full = stream.plan, stream.finished_blocks()
-    try:
+    remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
+    with blocks.refusing_damage(_WHERE, "hold sound blocks", stream.path, remedy):
         last = stream.checkpoint(full).done
         full -= full > 0 and last != plan.stop(full - 1)  # it failed, or was extended
         for block in range(full):
             stream.sound(block)
-    except blocks.DamagedError as flaw:
-        remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
-        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return min(full * plan.rows, 1 + plan.steps // plan.every)

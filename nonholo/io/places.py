@@ -14,7 +14,7 @@ import socket
 import uuid
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from filelock import FileLock, Timeout
 
@@ -196,12 +196,17 @@ def check_assertions(where: str) -> None:
         raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
 
 
-def format_of(path: str | Path) -> str | None:
-    """Return the format that a store claims to have; None if it has no readable one."""
+def attribute_of(path: str | Path, name: str) -> Any:
+    """Return an attribute that a store claims to have, unchecked; None if it has no readable one."""
     try:
-        return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
+        return json.loads((Path(path) / "zarr.json").read_text())["attributes"][name]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def format_of(path: str | Path) -> str | None:
+    """Return the format that a store claims to have; None if it has no readable one."""
+    return attribute_of(path, "format")
 
 
 def check_suffix(path: str | Path, where: str) -> None:
@@ -262,19 +267,14 @@ def new_store(path: Path, *, overwrite: bool = False, new: str | None = None) ->
 
 def _put_in_place(part: Path, target: Path, *, overwrite: bool, new: str | None) -> None:
     """Rename a complete store to its path; an older one there is replaced only if asked (see `check_target`)."""
-    if not (overwrite and target.exists()):
-        try:
-            part.rename(target)
-            return
-        except OSError:
-            check_target(target, new=new)
-            raise
-    check_target(target, overwrite=True)  # once more, after the time that writing took
+    check_target(target, overwrite=overwrite, new=new)  # once more, after the time that writing took
     old = part.with_suffix(".old")  # which remove_remains knows
-    target.rename(old)
+    if overwrite and target.exists():
+        target.rename(old)
     try:
         part.rename(target)
     except OSError:
-        old.rename(target)
+        if old.exists():
+            old.rename(target)
         raise
     shutil.rmtree(old, ignore_errors=True)

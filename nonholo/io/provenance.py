@@ -10,7 +10,7 @@ import hashlib
 import importlib
 import json
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated, Any, Literal
 
@@ -62,24 +62,38 @@ def missing_part(data: dict[str, Any]) -> str | None:
     return None
 
 
+READY = "examples."
+"""How stores call ready systems, before their names."""
+
+
+@contextlib.contextmanager
+def refusing_other_data(where: str, what: str) -> Iterator[None]:
+    """Refuse data of a store of which nothing can be made: another version wrote them, or somebody edited them."""
+    try:
+        yield
+    except (AttributeError, KeyError, TypeError) as failure:
+        got, remedy = f"{type(failure).__name__}: {failure}", "Upgrade nonholo, or copy the store again."
+        raise error(where, f"hold {what}", got, remedy) from failure
+
+
 def restore_system(kind: str, parameters: dict[str, Any]) -> Any:
-    """Build the system of a class of this version from its parameters, or a ready one of `nonholo.examples`."""
-    if kind.startswith(READY):
-        return restore_ready(kind.removeprefix(READY), parameters)
+    """Build the system of a class of this version from its parameters, or a ready one of `nonholo.examples`.
+
+    Functions of `nonholo.examples` are those that users call, which check what they get.
+    """
+    if (name := kind.removeprefix(READY)) != kind:
+        with needs("jax", f"load_orbit(...) of nonholo.{kind}"):
+            ready = importlib.import_module("nonholo.examples")
+        if name not in ready.__all__ or not name.islower():
+            raise error(WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
+        with refusing_other_data(WHERE, f"parameters of nonholo.{kind}"):
+            return getattr(ready, name)(**parameters).system
     kind_of_system = getattr(systems, kind, None)
     if not (isinstance(kind_of_system, type) and issubclass(kind_of_system, AbstractSystem)):
         remedy = "Upgrade nonholo or, for a custom system, pass load_orbit(path, discrete=...)."
         raise error(WHERE, "hold a system of this version", repr(kind), remedy)
-    arguments = {_ARGUMENTS.get(name, name): _restore(value) for name, value in parameters.items()}
-    return _make(kind, kind_of_system, arguments)
-
-
-def _make(name: str, make: Callable[..., Any], parameters: dict[str, Any]) -> Any:
-    """Call what makes an object of a store, which checks what it gets; refuse parameters of another version."""
-    try:
-        return make(**parameters)
-    except TypeError as failure:
-        raise error(WHERE, f"hold parameters of nonholo.{name}", str(failure), "Upgrade nonholo.") from None
+    with refusing_other_data(WHERE, f"parameters of nonholo.{kind}"):
+        return kind_of_system(**{_ARGUMENTS.get(name, name): _restore(value) for name, value in parameters.items()})
 
 
 def describe_group(group: AbstractMatrixGroup) -> dict[str, Any]:
@@ -142,25 +156,12 @@ def _restore(value: Any) -> Any:
     if "kind" not in value:
         return restore_group(value)
     if value["kind"] in _FORCES:
-        return _make(value["kind"], _FORCES[value["kind"]], value["parameters"])
+        return _FORCES[value["kind"]](**value["parameters"])
     return restore_system(value["kind"], value["parameters"])
 
 
 def _is_own(data: dict[str, Any]) -> bool:
     return _OWN in (data.get("group"), data.get("object")) or any(map(_is_own, data.get("factors", [])))
-
-
-READY = "examples."
-"""How stores call ready systems, before their names."""
-
-
-def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
-    """Make a ready system by the function of `nonholo.examples` that users call, which checks what it gets."""
-    with needs("jax", f"load_orbit(...) of nonholo.examples.{name}"):
-        ready = importlib.import_module("nonholo.examples")
-    if name not in ready.__all__ or not name.islower():
-        raise error(WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
-    return _make(f"{READY}{name}", getattr(ready, name), parameters).system
 
 
 class _Recorded(BaseModel):
@@ -189,17 +190,6 @@ def problems_in(failure: Exception) -> str:
         return printable(str(failure))
     flaws = [(".".join(map(str, flaw["loc"])) or "they", flaw["msg"]) for flaw in failure.errors()[:5]]
     return printable("; ".join(f"{place}: {text.removeprefix('Value error, ').rstrip('.')}" for place, text in flaws))
-
-
-def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
-    """Return what was recorded of a system, on a group if there is one, for orbits as they were computed."""
-    try:
-        record = _Recorded.model_validate(parameters).model_dump()
-    except ValidationError as failure:
-        raise error(WHERE, "describe its system", problems_in(failure), "It was edited: run it again.") from None
-    with needs("jax", "load_orbit(...) of an orbit in coordinates"):
-        room = importlib.import_module("nonholo.lagrange_dalembert")
-    return room.RecordedSystem(record | ({} if group is None else {"group": group}), (kind, parameters))
 
 
 _MOTIONS: dict[str, Callable[..., Any]] = {
@@ -264,19 +254,26 @@ def restore_motion(attributes: dict[str, Any], motion: Any, owner: str = "load_o
         kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
         remedy = "Pass that of the store, or None."
         where = f"{owner}(discrete=...)"
-        return _same(where, attributes, instance(where, motion, kinds, "be a discretization", remedy))
+        motion = on_route_of(attributes, instance(where, motion, kinds, "be a discretization", remedy))
+        for key, value in identity_of(motion).items():
+            if value != attributes[key]:  # JSON text: floating-point numbers are compared exactly
+                got = f"{key} {value} instead of {attributes[key]}"
+                raise error(where, "be the discretization of the store", got, "Pass that one.")
+        return motion
     options = json.loads(attributes["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
     remedy = f"Pass {owner}(path, discrete=...) with the {kind} that made this store."
-    system = system_of(attributes, WHERE, remedy, missing_part(options))
-    if kind not in _MOTIONS:
-        raise error(WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
-    motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
+    with refusing_other_data(WHERE, "a motion of this version"):
+        system = system_of(attributes, WHERE, remedy, missing_part(options))
+        if kind not in _MOTIONS:
+            raise error(WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
+        motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
     if type(motion_again).__name__ != kind or route != motion_again.route_name:
         raise error(WHERE, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
     return motion_again
 
 
+@refusing_other_data(WHERE, "a system of this version")
 def system_of(attributes: dict[str, Any], where: str, remedy: str, missing: str | None = None) -> Any:
     """Return the system of a store; in coordinates, what is known of one whose functions it does not hold."""
     name, parameters = attributes["system"], json.loads(attributes["parameters"])
@@ -285,16 +282,14 @@ def system_of(attributes: dict[str, Any], where: str, remedy: str, missing: str 
         return restore_system(name, parameters)
     if missing or "orbits" not in parameters or missing_part({"group": group}):
         raise error(where, "be rebuilt from data", f"a store whose {absent}", remedy)
-    return recorded_system(name, parameters, None if group is None else restore_group(group))
-
-
-def _same(where: str, attributes: dict[str, Any], motion: Any) -> Any:
-    motion = on_route_of(attributes, motion)
-    for key, value in identity_of(motion).items():
-        if value != attributes[key]:  # JSON text: floating-point numbers are compared exactly
-            got = f"{key} {value} instead of {attributes[key]}"
-            raise error(where, "be the discretization of the store", got, "Pass that one.")
-    return motion
+    try:
+        record = _Recorded.model_validate(parameters).model_dump()
+    except ValidationError as failure:
+        raise error(WHERE, "describe its system", problems_in(failure), "It was edited: run it again.") from None
+    with needs("jax", "load_orbit(...) of an orbit in coordinates"):
+        room = importlib.import_module("nonholo.lagrange_dalembert")
+    own = {} if group is None else {"group": restore_group(group)}
+    return room.RecordedSystem(record | own, (name, parameters))
 
 
 def on_route_of(attributes: dict[str, Any], motion: Any) -> Any:

@@ -81,7 +81,7 @@ def nearest_place(system: Any, x: Array) -> Array:
 def refuse_table(owner: str, system: Any) -> None:
     """Refuse forces that belong to steps."""
     if system.is_driven:
-        systems.refuse_table(f"{owner}(system=...)", system.table)
+        systems.forces.refuse_table(f"{owner}(system=...)", system.table)
 
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:

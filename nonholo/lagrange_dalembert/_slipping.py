@@ -28,7 +28,7 @@ from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert.functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
-from nonholo.systems import Contacts, friction, update_slope
+from nonholo.systems.forces import Contacts, friction, update_slope
 
 _MOST, _ROUNDING, _SEEN = 40, 1e-14, 1e-14  # corrections of an impulse; relative; of what changes a slope
 

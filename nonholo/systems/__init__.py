@@ -1,6 +1,6 @@
 """Systems: a group, an inertia operator and the subspace that velocities are constrained to."""
 
-from nonholo.systems import families
+from nonholo.systems import families, forces
 from nonholo.systems._base import (
     AbstractLLSystem,
     AbstractLRSystem,
@@ -69,14 +69,7 @@ from nonholo.systems.forces import (
     Widened,
     central_differences,
     force_of,
-    friction,
-    parts_of,
-    refuse_table,
-    slips_of,
     terms_of,
-    update_slope,
-    with_later_force,
-    without_slips,
 )
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))

@@ -33,7 +33,23 @@ Poses = Float[Array, "... N N"]
 """Matrices of the group."""
 
 
-class AbstractSystem(Keeper, abc.ABC):
+class _Leaves:
+    """The fields of a dataclass that are not its `structure`."""
+
+    def __get__(self, owner: Any, kind: Any) -> tuple[str, ...]:
+        return tuple(field.name for field in dataclasses.fields(kind) if field.name not in kind.structure)
+
+
+class AbstractTree:
+    """A dataclass that JAX takes apart: numbers, and what is fixed."""
+
+    leaves: ClassVar[tuple[str, ...]] = cast(Any, _Leaves())
+    """Fields that are differentiable numbers, all that are not fixed; None where a field is not used."""
+    structure: ClassVar[tuple[str, ...]] = ()
+    """Fields that are fixed: groups, subspaces, axes."""
+
+
+class AbstractSystem(AbstractTree, Keeper, abc.ABC):
     """A kinetic energy that is invariant under left translations, with a linear constraint on velocities.
 
     The constraint is fixed in the body, unless a class says otherwise. A system states its group, mass tensor,
@@ -42,12 +58,8 @@ class AbstractSystem(Keeper, abc.ABC):
     """
 
     group: AbstractMatrixGroup
-    leaves: ClassVar[tuple[str, ...]]
-    """Fields that are differentiable numbers; None where a field is not used."""
-    structure: ClassVar[tuple[str, ...]] = ()
-    """Fields that are fixed: groups, subspaces, axes."""
     mass_tensor: Any
-    is_spatial: ClassVar[bool]
+    is_spatial: ClassVar[bool] = False
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
     is_forced: ClassVar[bool] = False
     """Whether it is a `Forced`; questions about free motions are then refused."""
@@ -190,10 +202,6 @@ class AbstractSystem(Keeper, abc.ABC):
     def forces(self) -> Any:
         """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
-
-    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple["AbstractSystem", Any, Any, Any]:
-        """Return the fields of a `Forced`: the body inside, and all that acts on it by a scheme."""
-        return self, potential, force, scheme
 
     @property
     def inside(self) -> "AbstractSystem":
@@ -367,8 +375,6 @@ def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
 
 class AbstractLLSystem(AbstractSystem):
     r"""A left-invariant Lagrangian with a left-invariant constraint: body velocities lie in $\mathfrak{d}$."""
-
-    is_spatial: ClassVar[bool] = False
 
     def equilibria(self) -> Equilibria:
         r"""Return the body velocities that stay constant, and the half of them that attracts.

@@ -2,11 +2,9 @@
 
 import abc
 import importlib
-from collections.abc import Mapping
-from types import MappingProxyType
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn
 
-from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
 
 if TYPE_CHECKING:
@@ -71,12 +69,9 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """Whether it has its Lagrangian: one from a store need not."""
 
     description: tuple[str, dict[str, Any]] | None = None
-    parameters: Mapping[str, Any] = MappingProxyType({})
-
-    @property
-    def family(self) -> Any:
-        """The one system that stands for all numbers of the parameters."""
-        return self
+    parameters: Mapping[str, Any]
+    forced: Callable[..., Any]
+    with_parameters: Callable[..., Any]
 
     def _with_fields(self, **fields: Any) -> Any:
         """Return a system with other fields, which need no check; it does not have a name for stores."""
@@ -86,37 +81,6 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         for name in caches - fields.keys():
             vars(system).pop(name, None)
         return system
-
-    free = property(lambda self: self)
-    """The system without the form of its constraint that may yield; itself if none may."""
-
-    @property
-    def plain(self) -> Any:
-        """The same system without parameters."""
-        return self
-
-    def bound(self, *numbers: Any) -> Any:
-        """Return the system whose functions have numbers of its parameters within."""
-        return self
-
-    def with_parameters(self, **numbers: Any) -> Any:
-        """Return the same system with other numbers of its parameters; refused where there are none."""
-        remedy = "Pass parameters= to a LagrangeDAlembert."
-        raise error("with_parameters(...)", "be called on a system with parameters", type(self).__name__, remedy)
-
-    def takes_time(self, function: str) -> bool:
-        """Return whether a function is called with the time."""
-        return False
-
-    @property
-    def has_parts(self) -> bool:
-        """Whether parts of a step are defined."""
-        return True
-
-    def forced(self, potential: Any, force: Any) -> Any:
-        """Return the system with a potential and a force; refused where there is no way to have them."""
-        remedy = "Put them into a LagrangeDAlembert or an LLSystem."
-        raise error("Forced(system=...)", "be a system that forces act on", type(self).__name__, remedy)
 
     def vector_field(self) -> Any:
         """Return the equations of motion, see `nonholo.vector_field`."""

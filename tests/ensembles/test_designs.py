@@ -187,7 +187,6 @@ def test_every_member_is_in_one_block(sizes: tuple[int, ...], block: int) -> Non
     numbers, counts = np.arange(np.prod(sizes)).reshape(sizes), np.zeros(sizes, dtype=int)
     for number in range(layout.blocks):
         piece = layout.piece(number)
-        assert piece.number == number
         assert piece.count <= block
         assert numbers[piece.place].ravel().tolist() == list(range(piece.first, piece.first + piece.count))
         counts[piece.place] += 1

@@ -22,7 +22,7 @@ from nonholo.discrete._variety import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems import Forced, Widened, friction, update_slope
+from nonholo.systems.forces import Forced, Widened, friction, update_slope
 
 _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more

@@ -29,7 +29,7 @@ from nonholo.lagrange_dalembert.functions._traced import (
     takes_time,
     with_parameters,
 )
-from nonholo.systems import force_of, parts_of, slips_of, with_later_force, without_slips
+from nonholo.systems.forces import force_of, parts_of, slips_of, with_later_force, without_slips
 
 
 class Parameters(Mapping[str, Any]):

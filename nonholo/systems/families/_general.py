@@ -9,11 +9,12 @@ import numpy as np
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
 from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
-from nonholo.groups import SO, AbstractMatrixGroup
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import _mass
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, replace_numbers
 from nonholo.systems._normal_form import NormalForm, recognized_form
-from nonholo.systems._subspace import subspace_and_annihilator, top_rows
+from nonholo.systems._subspace import subspace_and_annihilator
+from nonholo.systems.families._tops import AbstractTop
 
 _SINGULAR = 1e-13  # relative to the terms of the inertia
 
@@ -76,7 +77,6 @@ class LLSystem(AbstractLLSystem):
     given_inertia: Array
     constraint_subspace: Array = None
     annihilator: Array = None
-    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor", "given_inertia")
     structure: ClassVar[tuple[str, ...]] = ("group", "constraint_subspace", "annihilator")
     stack = replace_numbers
 
@@ -218,7 +218,6 @@ class LRSystem(AbstractLRSystem):
     mass_tensor: Array
     constraint_subspace: Array = None
     annihilator: Any = dataclasses.field(default=None, kw_only=True)
-    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("group", "constraint_subspace", "annihilator")
 
     def __post_init__(self) -> None:
@@ -232,7 +231,7 @@ class LRSystem(AbstractLRSystem):
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class VeselovaTop(AbstractLRSystem):
+class VeselovaTop(AbstractTop, AbstractLRSystem):
     r"""A top on SO(n) that may only turn in planes that contain an axis $e_n$ fixed in space.
 
     $$ l(\omega) = \tfrac12\mathrm{tr}(\hat\omega J\hat\omega^T), \qquad
@@ -256,19 +255,8 @@ class VeselovaTop(AbstractLRSystem):
     """
 
     mass_tensor: Array
-    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
 
     def __post_init__(self) -> None:
         where = "VeselovaTop(mass_tensor=...)"
         self._hold(_mass.body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor."))
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
-
-    @system_memo
-    def group(self) -> AbstractMatrixGroup:
-        """The rotation group SO(n)."""
-        return SO(self.mass_tensor.shape[-1])
-
-    @system_memo
-    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
-        r"""Rows $e_i\wedge e_n$, fixed in space."""
-        return top_rows(self.group)

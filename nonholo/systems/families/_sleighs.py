@@ -45,7 +45,6 @@ class ChaplyginSleigh(AbstractLLSystem):
     a: Array
     b: Array = 0.0
     group: ClassVar[AbstractMatrixGroup] = SE(2)
-    leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
     stack = replace_numbers
     has_blade: ClassVar[bool] = True
 
@@ -151,7 +150,6 @@ class MultidimensionalSleigh(AbstractSleighN):
     mass: Array
     center_of_mass: Array
     mass_tensor: Array
-    leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "mass_tensor")
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh"
@@ -239,7 +237,6 @@ class ArrowheadSleigh(AbstractSleighN):
     center_of_mass: Array
     diagonal: Array
     coupling: Array
-    leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
 
     def __post_init__(self) -> None:
         owner = "MultidimensionalSleigh.arrowhead"

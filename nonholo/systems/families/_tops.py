@@ -10,7 +10,7 @@ from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems import _mass
-from nonholo.systems._base import AbstractLLSystem, replace_numbers
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem, replace_numbers
 from nonholo.systems._normal_form import NormalForm, top_form
 from nonholo.systems._subspace import top_rows
 
@@ -43,7 +43,6 @@ class RigidBody(AbstractLLSystem):
 
     mass_tensor: Array
     group: Array = None
-    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("group",)
     stack = replace_numbers
 
@@ -91,12 +90,26 @@ class RigidBody(AbstractLLSystem):
         return np.eye(self.group.dim)
 
 
+class AbstractTop(AbstractSystem):
+    """A top on SO(n), whose first field is as long as n."""
+
+    @system_memo
+    def group(self) -> AbstractMatrixGroup:
+        """The rotation group SO(n)."""
+        return SO(getattr(self, self.leaves[0]).shape[-1])
+
+    @system_memo
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        r"""Rows $e_i\wedge e_n$."""
+        return top_rows(self.group)
+
+
 _E3 = (0.0, 0.0, 1.0)
 _LAST = array("SuslovTop(axis=...)", _E3, (3,))
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class SuslovTop(AbstractLLSystem):
+class SuslovTop(AbstractTop, AbstractLLSystem):
     r"""A top on SO(n) that may only turn in planes that contain a body axis: $e_n$, or for n = 3 the axis `axis`.
 
     $$ l(\omega) = \tfrac12 \mathrm{tr}(\hat\omega J \hat\omega^T), \qquad
@@ -129,7 +142,6 @@ class SuslovTop(AbstractLLSystem):
 
     mass_tensor: Array
     axis: Array = dataclasses.field(default=None, kw_only=True)
-    leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("axis",)
     stack = replace_numbers
 
@@ -176,11 +188,6 @@ class SuslovTop(AbstractLLSystem):
     def __repr__(self) -> str:
         head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
         return f"SuslovTop({head},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
-
-    @system_memo
-    def group(self) -> AbstractMatrixGroup:
-        """The rotation group SO(n)."""
-        return SO(self.mass_tensor.shape[-1])
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -246,7 +253,7 @@ def _forbidden_axis(where: str, value: Array, n: int) -> Array:
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
-class ArrowheadTop(AbstractLLSystem):
+class ArrowheadTop(AbstractTop, AbstractLLSystem):
     r"""The Suslov top on SO(n) with $J = \mathrm{diag}(d_1, \dots, d_n)$ plus c in the last row and column.
 
     The constrained inertia is $B = \mathrm{diag}(d_1 + d_n, \dots, d_{n-1} + d_n)$. `SuslovTop.arrowhead` makes it;
@@ -269,7 +276,6 @@ class ArrowheadTop(AbstractLLSystem):
 
     diagonal: Array
     coupling: Array
-    leaves: ClassVar[tuple[str, ...]] = ("diagonal", "coupling")
 
     def __post_init__(self) -> None:
         self._hold(*_mass.arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling))
@@ -284,11 +290,6 @@ class ArrowheadTop(AbstractLLSystem):
         return SuslovTop(self.homogeneous_mass_tensor)
 
     @system_memo
-    def group(self) -> AbstractMatrixGroup:
-        """The rotation group SO(n)."""
-        return SO(len(self.diagonal))
-
-    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
         """The mass tensor as a matrix."""
         return _mass.arrowhead("SuslovTop.arrowhead", self.diagonal, self.coupling, -1)
@@ -297,11 +298,6 @@ class ArrowheadTop(AbstractLLSystem):
     def inertia_along(self) -> _mass.WideInertia:
         """The diagonal of B."""
         return _mass.WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, 0 * self.coupling)
-
-    @system_memo
-    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
-        r"""Rows $e_i\wedge e_n$."""
-        return top_rows(self.group)
 
     @system_memo
     def normal_form(self) -> NormalForm:

@@ -112,7 +112,6 @@ class Forced(AbstractSystem):
     potential: Any = None
     force: Any = None
     scheme: str | None = None
-    leaves: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
     structure: ClassVar[tuple[str, ...]] = ("scheme",)
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
@@ -129,8 +128,11 @@ class Forced(AbstractSystem):
 
     def __post_init__(self) -> None:
         remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
-        system = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
-        self._hold(*system.add_forces(self.potential, self.force, self.scheme))
+        system: Any = instance("Forced(system=...)", self.system, AbstractSystem, "be a system on a group", remedy)
+        if system.is_forced:  # a table may come later
+            refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
+            force, scheme = _friction.with_later_force(system, self.force), self.scheme or system.scheme
+            self._hold(system.system, system.potential, force, scheme)
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
@@ -139,25 +141,16 @@ class Forced(AbstractSystem):
             else:
                 each.check(self.system.group)
         assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
-        assign(self, force=_friction.force_of(self._checked_parts()))
-
-    def add_forces(self, potential: Any, force: Any, scheme: str | None) -> tuple[AbstractSystem, Any, Any, Any]:
-        """Return the fields of the system with a table that comes later; other forces are refused."""
-        refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(potential, None))
-        return self.system, self.potential, _friction.with_later_force(self, force), scheme or self.scheme
-
-    def _checked_parts(self) -> dict[str, Any]:
-        """Return what the force is made of, checked against the system."""
-        parts, inside = _friction.parts_of(self.force), self.system
+        parts, dim = _friction.parts_of(self.force), self.system.group.dim
         if "friction" in parts:
-            parts["friction"].check(inside.group.dim)
+            parts["friction"].check(dim)
         _ = self.free  # refused here where rows do not fit
         if "function" in parts:
             function("Forced(force=...)", parts["function"], "time", "configuration", "body_velocity")
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
-            parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
-        return parts
+            parts["table"] = array("Forced(force=...)", parts["table"], (None, dim), remedy)
+        assign(self, force=_friction.force_of(parts))
 
     @functools.cached_property
     def terms(self) -> tuple[Any, ...]:
@@ -237,8 +230,7 @@ class Forced(AbstractSystem):
     @property
     def names(self) -> str:
         """The name of the forces in errors."""
-        actions = [*self.terms, *self.parts.values()]
-        return " and ".join(map(name_of, actions))
+        return " and ".join(map(name_of, (*self.terms, *self.parts.values())))
 
     @property
     def needs_function(self) -> bool:

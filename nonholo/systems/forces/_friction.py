@@ -13,14 +13,14 @@ from nonholo.base.checks import array, assign, error, is_traced, number, shape_o
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
-from nonholo.systems._base import AbstractLLSystem, AbstractSystem, refuse_fixed_in_space
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem, AbstractTree, refuse_fixed_in_space
 from nonholo.systems._subspace import independent_rows
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Friction:
+class Friction(AbstractTree):
     r"""The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
     In steps of order 2 it never adds energy, at any step size; of higher orders see Proposition 18.5. Under the scheme
@@ -40,8 +40,6 @@ class Friction:
     """
 
     coefficients: Array
-    leaves: ClassVar[tuple[str, ...]] = ("coefficients",)
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
@@ -80,7 +78,7 @@ _IN_SPAN = 1e-10  # relative, of rows that must lie in a span
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Slip:
+class Slip(AbstractTree):
     r"""Rows of a constraint that may yield: one contact with dry and viscous friction.
 
     With the slip velocity $v = A\omega$, A the rows, and the reaction $\lambda$ in $A^T\lambda$:
@@ -121,7 +119,6 @@ class Slip:
     rows: Array
     grip: Array
     viscous: Array = 0.0
-    leaves: ClassVar[tuple[str, ...]] = ("grip", "viscous")
     structure: ClassVar[tuple[str, ...]] = ("rows",)
 
     def __post_init__(self) -> None:
@@ -173,14 +170,13 @@ class Widened(AbstractLLSystem):
     Attributes:
         system: The system with its whole constraint.
         rows: A, (s, dim), what may not vanish.
-        remaining: The rows of its annihilator that never yield.
+        annihilator: The rows of its annihilator that never yield.
     """
 
     system: AbstractSystem
     rows: Float[np.ndarray, "s dim"]
-    remaining: Float[np.ndarray, "j dim"]
-    leaves: ClassVar[tuple[str, ...]] = ("system",)
-    structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
+    annihilator: Array = None
+    structure: ClassVar[tuple[str, ...]] = ("rows", "annihilator")
 
     def __post_init__(self) -> None:
         """Refuse a slip without inertia, as that of a rod about itself."""
@@ -198,16 +194,11 @@ class Widened(AbstractLLSystem):
     frame = property(operator.attrgetter("system.frame"))
 
     @system_memo
-    def annihilator(self) -> Float[np.ndarray, "j dim"]:
-        """The rows that never yield."""
-        return self.remaining
-
-    @system_memo
     def duals(self) -> Float[np.ndarray, "s dim"]:
         """V, the velocities of unit slips."""
         system, s = self.system, len(self.rows)
         S = np.asarray(system.constraint_subspace)
-        equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.remaining, self.rows])
+        equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.annihilator, self.rows])
         return np.linalg.solve(equations, np.eye(len(equations))[:, -s:]).T
 
     @system_memo
@@ -232,7 +223,7 @@ class Widened(AbstractLLSystem):
         if self.system.canonical is self.system:
             return self
         adjoint = self.group.adjoint(self.frame)
-        return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
+        return Widened(self.system.canonical, self.rows @ adjoint, self.annihilator @ adjoint)
 
     @system_memo
     def frame_map(self) -> Float[Array, "k k"]:

@@ -2,7 +2,7 @@ r"""Potentials: linear in the entries of the pose, $U = \mathrm{tr}(A^Tg)$, such
 
 import abc
 import dataclasses
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -10,19 +10,15 @@ from nonholo.base.checks import array, assign, error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._base import Covectors, Poses
+from nonholo.systems._base import AbstractTree, Covectors, Poses
 
 
-class AbstractLinear(abc.ABC):
+class AbstractLinear(AbstractTree, abc.ABC):
     r"""A potential $U(g) = \mathrm{tr}(A^Tg)$ with a constant matrix A, homogeneous on SE(n)."""
 
     @abc.abstractmethod
     def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
         """Return A for matrices of the group."""
-
-    @abc.abstractmethod
-    def check(self, group: AbstractMatrixGroup) -> None:
-        """Refuse a group of another size."""
 
     def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
@@ -59,8 +55,6 @@ class Linear(AbstractLinear):
     """
 
     matrix: Array
-    leaves: ClassVar[tuple[str, ...]] = ("matrix",)
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         rows = array("Linear(matrix=...)", self.matrix, (None, None), "Pass A, as large as the matrices of the group.")
@@ -134,8 +128,6 @@ class Gravity(AbstractLinear):
 
     force: Array
     point: Array
-    leaves: ClassVar[tuple[str, ...]] = ("force", "point")
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
@@ -172,7 +164,7 @@ class Gravity(AbstractLinear):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Spring:
+class Spring(AbstractTree):
     r"""The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - L)^2$.
 
     With a length L it has no direction where $gx = p$: its force is undefined there, and the motion `nonfinite`. Under
@@ -202,8 +194,6 @@ class Spring:
     space_point: Array
     stiffness: Array
     length: Array = 0.0
-    leaves: ClassVar[tuple[str, ...]] = ("body_point", "space_point", "stiffness", "length")
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         x = array("Spring(body_point=...)", self.body_point, (None,), "Pass the n body coordinates of a point.")
