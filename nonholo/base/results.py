@@ -150,6 +150,7 @@ def conclude_flow(orbit: Any, time: Any, errors: tuple[float, float], acting: st
     """Return a flow, or raise if it ended before the last of its times; `acting` names the force on it."""
     if orbit.outcome != Outcome.successful:
         (rtol, atol), count = errors, len(orbit)
-        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        ahead = time[min(count, len(time) - 1)]  # the last state itself may be one that is not finite
+        where = f"Flow from time {time[count - 1]:g} to {ahead:g}{acting} (rtol {rtol:g}, atol {atol:g})"
         raise OutcomeError(orbit.outcome, where, orbit, reason)
     return orbit

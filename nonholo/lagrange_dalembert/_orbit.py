@@ -18,7 +18,7 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
 from nonholo.orbit import AbstractMotion, AbstractOrbit, First
-from nonholo.systems import AbstractCoordinateSystem, Start
+from nonholo.systems import AbstractCoordinateSystem, Start, refuse_table
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
@@ -86,9 +86,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         del outcome
         return dataclasses.replace(ahead, time=self.time, step=self.step)
 
-    def reflection(self, normal: Float[np.ndarray, "n"], bounce: float, direction: int) -> Self | None:
-        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
-        return room("_flow").reflection(self, normal, bounce, direction)
+    def push(self, normal: Float[np.ndarray, "n"], change: float) -> Self:
+        """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
+        return room("_flow").push(self, normal, change)
 
     def rate_along(self, normal: Float[np.ndarray, "n"]) -> float:
         """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
@@ -326,10 +326,7 @@ class CoordinateMotion:
 
     system: Any
     time_step: float | None
-    columns: ClassVar[tuple[str, ...]] = (
-        *("time", "configuration", "displacement", "body_velocity"),
-        *("momentum", "multipliers", "energy", "constraint_residual"),
-    )
+    columns: ClassVar[tuple[str, ...]] = (*_ROWS[1:], "multipliers")
 
     def orbit(self, *, branch: str, **rows: Any) -> AbstractCoordinateOrbit:
         """Return the orbit of rows of the columns; those of multipliers that do not exist are left out.
@@ -378,7 +375,7 @@ class CoordinateFlow(CoordinateMotion):
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
         del with_poses
-        room("_flow").refuse_table(start.owner, self.system)
+        refuse_table(f"{start.owner}(system=...)", self.system.table)
         state = room("_discretization").checked_state(
             self.system, start.configuration, {start.name: start.value}, self.begins, start.owner, project=start.project
         )

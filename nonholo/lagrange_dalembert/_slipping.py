@@ -25,7 +25,6 @@ from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Array, Bool, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import CoordinateStepper
-from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert.functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import Contacts, friction, update_slope
@@ -218,7 +217,7 @@ def _node(system: Any, x: Array, p: Array, rows: Array) -> tuple[Array, Array]:
     """Return the momenta of slips in a momentum, and the matrix of those of unit slips."""
     w, A, dual = equations.inverse_legendre(system, x, p), equations.forms(system, x), jnp.linalg.pinv(rows).T
     across = jnp.linalg.pinv(A).T @ (p - equations.momentum(system, x, w))
-    units = jax.vmap(lambda off: bordered_solution(system, x, w, jnp.zeros_like(p), off)[1])(dual)
+    units = jax.vmap(lambda off: equations.bordered_solution(system, x, w, jnp.zeros_like(p), off)[1])(dual)
     return dual @ across, dual @ units.T
 
 

@@ -17,10 +17,11 @@ from nonholo.base.traced import FEW, call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
-from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
+from nonholo.lagrange_dalembert._flow import acceleration, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
+from nonholo.systems import refuse_table
 
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
 
@@ -31,7 +32,7 @@ Slopes = tuple[Array, Array, Array]
 def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked place and velocity of a flow, or of the step that a map begins with."""
     system = motion.system
-    refuse_table(owner, system)
+    refuse_table(f"{owner}(system=...)", system.table)
     still = np.zeros(system.shapes[1])
     x, v = checked_state(system, configuration, {"body_velocity": still if velocity is None else velocity}, 0.0, owner)
     if motion.time_step is None:

@@ -179,7 +179,6 @@ class AbstractOrbit(Keeper, abc.ABC):
     def with_step(self: SelfT, ahead: SelfT, outcome: Outcome) -> SelfT:
         """Return one state with the step of a run that began there, as a state of that run, and what became of it."""
 
-    @abc.abstractmethod
     def reflection(self: SelfT, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> SelfT | None:
         r"""Return one state after the impulse of a wall along a covector, which reverses its speed along that.
 
@@ -191,6 +190,12 @@ class AbstractOrbit(Keeper, abc.ABC):
         Returns:
             None where the motion is not toward the wall.
         """
+        rate = self.rate_along(normal)
+        return self.push(normal, -(1 + bounce) * rate) if rate * direction > 0 else None
+
+    @abc.abstractmethod
+    def push(self: SelfT, normal: Float[np.ndarray, "dim"], change: float) -> SelfT:
+        """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
 
     @abc.abstractmethod
     def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
@@ -207,14 +212,6 @@ class AbstractOrbit(Keeper, abc.ABC):
         """Return a momentum after a change; zero where what this leaves is rounding."""
         after = momentum + change
         return np.where(np.abs(after) <= _ENDED * np.abs(change), 0.0, after)
-
-    @staticmethod
-    def impulse_of_wall(rate: float, response: Any, bounce: float, direction: int) -> Any:
-        """Return the size of the impulse along a normal from the rate of the gap and its change by a unit impulse.
-
-        None where the motion is not toward the wall.
-        """
-        return -(1 + bounce) * rate / response if rate * direction > 0 else None
 
     def refuse_reset(self, where: str) -> None:
         """Refuse impacts of motions that have no reflection in the energy."""

@@ -2,13 +2,12 @@
 
 import dataclasses
 import functools
-from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
-from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit, State
 from nonholo.simulation._event import Event, checked_events, has_resets, values_at
@@ -122,18 +121,6 @@ def _forward_speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
 
 cusp = Event(_forward_speed, name="cusp")
 r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its path in the plane has a cusp there."""
-
-
-def flow_in_coordinates(solve: Callable[[], Any], by_name: dict[str, Event]) -> Any:
-    """Solve the equations of a system in coordinates; return the orbit with what was found."""
-    try:
-        orbit, where = solve(), ""
-    except OutcomeError as early:
-        orbit, where = cast(AbstractOrbit, early.orbit), early.where
-    result = flow_with_events(by_name, orbit, cast(Any, orbit).solution.looks())
-    if result.outcome != Outcome.successful:
-        raise OutcomeError(result.outcome, where or f"Flow after time {result.time[-1]:g}", result)
-    return result
 
 
 def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarray, "steps"]) -> Any:

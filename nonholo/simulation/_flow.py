@@ -1,6 +1,5 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
-import functools
 import importlib
 from typing import Any, NamedTuple, TypeAlias, overload
 
@@ -12,7 +11,7 @@ from nonholo.base.results import Outcome, conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
-from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
+from nonholo.simulation._crossings import check_resets, flow_with_events, refuse_resets
 from nonholo.simulation._event import Event, checked_events, has_resets
 from nonholo.simulation._options import FEW
 from nonholo.simulation._search import values_of
@@ -162,10 +161,12 @@ def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: A
     if events is None:
         return room.flow(system, **how)
     by_name = checked_events("flow", events)
-    if not has_resets(by_name):
-        return flow_in_coordinates(functools.partial(room.flow, system, **how), by_name)
     flights, time, opening = room.flights(system, **how)
-    orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    if has_resets(by_name):
+        orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    else:
+        flow = flights.solve(opening, time)
+        orbit = flow_with_events(by_name, flow, flow.solution.looks())
     return flights.successful(orbit, time)
 
 
