@@ -107,7 +107,7 @@ _FINE, _COARSE = 1e-14, 1e-10  # relative errors of a step, by series and by dif
 def flow(system: Any, *, rtol: float | None, atol: float, **start: Any) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     time, first = _opening(system, **start)
-    return solve(system, first, time, rtol, atol)
+    return conclude_flow(solve(system, first, time, rtol, atol), time, _checked_errors(rtol, atol))
 
 
 def _opening(
@@ -138,7 +138,7 @@ class Flights(NamedTuple):
 
     def solve(self, there: Any, time: np.ndarray) -> Any:
         """Return the flow from a state at times, as far as it gets."""
-        return motion_from(self.system, there.as_start().numbers[1:], time, *self.errors)
+        return solve(self.system, there.as_start().numbers[1:], time, *self.errors)
 
     def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
         """Return the motion from several states, each up to the next one."""
@@ -189,11 +189,6 @@ def _checked_errors(rtol: float | None, atol: float) -> tuple[float, float]:
 
 
 def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
-    """Return the orbit from a checked place and velocity, or raise if it ends early."""
-    return conclude_flow(motion_from(system, first, time, rtol, atol), time, _checked_errors(rtol, atol))
-
-
-def motion_from(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float) -> Any:
     """Return the orbit from a checked place and velocity, as far as it gets."""
     errors = _checked_errors(rtol, atol)
     motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])

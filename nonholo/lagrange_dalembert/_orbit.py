@@ -382,7 +382,7 @@ class CoordinateFlow(CoordinateMotion):
         return First((room("_start").momentum(self.system, *state), *state))
 
     def solve(self, first: First, times: Float[np.ndarray, "K"], rtol: float, *, reconstruct: bool) -> Any:
-        """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""
+        """Return the orbit from a checked start, as far as it gets; an `rtol` of 0 is the default of its method."""
         del reconstruct
         return room("_flow").solve(self.system, first.numbers[1:], times, rtol or None)
 

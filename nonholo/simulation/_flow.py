@@ -12,9 +12,9 @@ from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_with_events, refuse_resets
-from nonholo.simulation._event import Event, checked_events, has_resets
+from nonholo.simulation._event import checked_events, has_resets
 from nonholo.simulation._options import FEW
-from nonholo.simulation._search import values_of
+from nonholo.simulation._search import Events, values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
@@ -152,7 +152,7 @@ def flow(
                 refuse_resets("flow", by_name, "impacts of a flow without poses: reconstruct=False")
             flights = BodyFlights(system, method, tolerances)
             return _successful(task, *_flow_between_walls(task.opening(first), time, flights, by_name))
-        return _solve_flow(task, solver, first, by_name)
+        return _successful(task, *_solve_flow(task, solver, first, by_name))
 
 
 def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: Any) -> Any:
@@ -197,14 +197,14 @@ def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
 
 
 def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
-    """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
+    """Return the flow from a checked start as far as it gets, with a pose where one is solved for, by the default."""
     solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     task = _Task(system, time, (rtol, 1.0), reconstruct)
-    return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)
+    return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)[0]
 
 
-def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str, Event] | None) -> Orbit:
-    """Return the orbit from a first state, with what events found."""
+def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: Events | None) -> tuple[Orbit, str]:
+    """Return the orbit from a first state, with what events found, and what a function said that ended it."""
     time, reconstruct = task.time, task.reconstruct
     if events is not None:
         values_of(events, task.opening(first if reconstruct else (first[0], None)))  # refused where there is none
@@ -220,10 +220,10 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str
     orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome).on_group()
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
-    return _successful(task, orbit, solution.fault)
+    return orbit, solution.fault
 
 
-def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
+def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: Events) -> tuple[Any, str]:
     """Return the orbit from a first state, with impacts, and what a function said that ended it."""
     if time[-1] < time[0]:
         refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")

@@ -5,7 +5,7 @@ import contextvars
 import dataclasses
 import functools
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any, NamedTuple, TypeAlias, cast
 
@@ -153,7 +153,7 @@ def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report:
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
     columns |= {"canonical_pose": rows.poses} if plan.with_poses else {}
-    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.places)
+    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.numbers[:2])
     if starts.demand is not None:
         free, probe = starts._replace(demand=None), plan._replace(steps=1, every=1, with_poses=True)
         _refuse_other_starts(batch, starts.demand, _in_lanes(members, free, probe, threads, lambda _: None))
@@ -238,7 +238,7 @@ def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, re
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stack_rows(each, plan.states) | _times(plan, count)
     branch = getattr(stepper, "branch", PRINCIPAL.name)
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.places, branch=branch)
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.numbers[:2], branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
@@ -267,12 +267,8 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
 
 def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
-    try:
-        times = cast(np.ndarray, plan.times)
-        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
-        orbit = flow(first, times, plan.rtol, reconstruct=plan.with_poses)
-    except OutcomeError as early:
-        orbit = cast(Any, early.orbit)
+    flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
+    orbit = flow(first, cast(np.ndarray, plan.times), plan.rtol, reconstruct=plan.with_poses)
     return orbit, len(orbit) - 1
 
 
@@ -282,10 +278,10 @@ def run_by_series(members: Members, starts: First, plan: Plan, threads: int, rep
 
     def work(part: slice, stop: np.ndarray) -> None:
         options = time - time[0], plan.rtol, stop
-        inertias, places = inertias_of(members.part(part)), starts.of(part).places
+        inertias, places = inertias_of(members.part(part)), starts.of(part).numbers[:2]
         pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
 
-    numbers = sum(x.shape[1] for x in starts.places) * len(time)
+    numbers = sum(x.shape[1] for x in starts.numbers[:2]) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     group, free = members.discrete.system.group, members.discrete.system.forces is None
     is_short = free and count <= _FLOWS and count * numbers <= _SOON
@@ -305,7 +301,7 @@ def run_by_series(members: Members, starts: First, plan: Plan, threads: int, rep
         codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
         for column in columns.values():
             column[np.arange(len(time)) >= good[:, None]] = np.nan
-    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
+    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.numbers[:2])
 
 
 def _motion_bound(members: Members, starts: First, time: np.ndarray) -> float:
@@ -335,7 +331,7 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
 
 
 def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
-    """Do all pieces of work and report each.
+    """Do all pieces of work and report each; what ends this thread, Ctrl-C among it, soon ends the others.
 
     Args:
         work: Does a piece; beside others it releases the interpreter's lock, and ends soon when the array becomes true.
@@ -343,17 +339,11 @@ def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], th
         threads: How many; 0 for this one, which Ctrl-C reaches only between calls of compiled code.
         report: Called with the number of members of a piece.
     """
-    for part in _finish_each(work, parts, threads):
-        report(part.stop - part.start)
-
-
-def _finish_each(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
-    """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
     stop = np.zeros(1, dtype=np.bool_)
     if not threads:
         for part in parts:
             work(part, stop)
-            yield part
+            report(part.stop - part.start)
         return
 
     def do(part: slice) -> None:
@@ -365,7 +355,7 @@ def _finish_each(work: Callable[[slice, np.ndarray], None], parts: list[slice], 
         waiting = {pool.submit(do, part): part for part in parts}
         for future in as_completed(waiting):
             future.result()
-            yield waiting[future]
+            report(waiting[future].stop - waiting[future].start)
     finally:
         stop[0] = True
         pool.shutdown(cancel_futures=True)
