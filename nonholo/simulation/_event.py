@@ -12,19 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import call, check_result, numbers_of
-from nonholo.base.checks import (
-    array,
-    assign,
-    checked_name,
-    choice,
-    error,
-    function,
-    instance,
-    is_name,
-    natural,
-    number,
-    shown,
-)
+from nonholo.base.checks import array, assign, checked_name, choice, error, function, is_name, natural, number, shown
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences
@@ -247,8 +235,8 @@ class Event:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):
             natural("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
-        if self.reset is not None:
-            instance("Event(reset=...)", self.reset, Impact, "be an impact", "Pass Impact(), or leave it out.")
+        if not isinstance(self.reset, Impact | None):
+            raise error("Event(reset=...)", "be an impact", shown(self.reset), "Pass Impact(), or leave it out.")
 
     @property
     def last(self) -> float:

@@ -4,15 +4,8 @@ import dataclasses
 from typing import Any
 
 from nonholo.base.checks import choice, error, flags, shown, step_counts, within_memory
-from nonholo.discrete import (
-    BranchRule,
-    Discretization,
-    RuleStepper,
-    as_discretization,
-    checked_rule,
-    has_frame,
-    refuse_composition,
-)
+from nonholo.discrete import Discretization, as_discretization, refuse_composition
+from nonholo.discrete.branching import BranchRule, RuleStepper, checked_rule, has_frame
 from nonholo.orbit import AbstractStepper
 from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._run import Run
@@ -59,8 +52,7 @@ def checked_run(
     if not isinstance(discrete, Discretization):
         others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    if discrete.forces is not None:
-        check_forces(owner, discrete, count)
+    check_forces(owner, discrete, count)
     return Run(stepper, count, every, None if events is None else watch_for(owner, stepper, events), throw, progress)
 
 

@@ -73,14 +73,6 @@ class Reached(NamedTuple):
         return self.outcome != Outcome.successful or (self.watch is not None and self.watch.stopped_by is not None)
 
 
-class Block(NamedTuple):
-    """A block of a run: its number, its orbit (None if it was known), and how the run stands at its end."""
-
-    number: int
-    orbit: Any
-    standing: Reached
-
-
 def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
     state, outcome = run.stepper.start(first)
@@ -181,8 +173,11 @@ class _Table:
 
 def blocks(
     run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] | None = None
-) -> Iterator[Block]:
-    """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
+) -> Iterator[tuple[int, Any, Reached]]:
+    """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed.
+
+    Each is its number, its orbit (None if it was known), and how the run stands at its end.
+    """
     standing = start
     for number in range(plan.blocks):
         orbit, there = None, None if look_up is None else look_up(number)
@@ -190,9 +185,8 @@ def blocks(
             orbit, there = compute_block(run.stepper, plan, number, standing, report)
         else:
             report(there.step, plan.steps)
-        standing = there
-        yield Block(number, orbit, standing)
-        if standing.is_last:
+        yield number, orbit, there
+        if (standing := there).is_last:
             return
 
 

@@ -41,9 +41,8 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     there, events = dataclasses.replace(orbit_at(run.stepper, start.state, 0), save_every=run.every), None
     if start.watch is not None:
         there, events = dataclasses.replace(there, events=start.watch.log()), descriptions(start.watch.events)
-    remedy = "Raise save_every to keep fewer states."
-    numbers = 1 + run.stepper.width
-    within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
+    size = 8.0 * (1 + run.steps // run.every) * (1 + run.stepper.width)
+    within_disk("simulate(store=...)", size, path, "Raise save_every to keep fewer states.")
     stream = io.orbits.create_stream(path, there, plan, _checkpoint(start), events, scenario)
     with io.places.write_lock(stream.path):
         return continue_run(run, stream)
@@ -298,9 +297,8 @@ def extend(
     stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
     with io.places.write_lock(stream.path):
         _refuse_ended(io.metadata.read_attributes(stream.path))
-        numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
-        size = 8.0 * (steps // run.every) * numbers
-        within_disk("extend(steps=...)", size, stream.path, remedy)
+        size = 8.0 * (steps // run.every) * (1 + run.stepper.width)
+        within_disk("extend(steps=...)", size, stream.path, "Pass fewer steps.")
         longer = io.orbits.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)

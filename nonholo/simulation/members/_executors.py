@@ -274,14 +274,14 @@ def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
 
 def run_by_series(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Solve for the flows of members side by side."""
-    count, pieces, time = len(members), {}, cast(np.ndarray, plan.times)
+    count, pieces, time, first = len(members), {}, cast(np.ndarray, plan.times), starts.numbers[:2]
 
     def work(part: slice, stop: np.ndarray) -> None:
         options = time - time[0], plan.rtol, stop
         inertias, places = inertias_of(members.part(part)), starts.of(part).numbers[:2]
         pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
 
-    numbers = sum(x.shape[1] for x in starts.numbers[:2]) * len(time)
+    numbers = sum(x.shape[1] for x in first) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     group, free = members.discrete.system.group, members.discrete.system.forces is None
     is_short = free and count <= _FLOWS and count * numbers <= _SOON
@@ -301,7 +301,7 @@ def run_by_series(members: Members, starts: First, plan: Plan, threads: int, rep
         codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
         for column in columns.values():
             column[np.arange(len(time)) >= good[:, None]] = np.nan
-    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.numbers[:2])
+    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *first)
 
 
 def _motion_bound(members: Members, starts: First, time: np.ndarray) -> float:
