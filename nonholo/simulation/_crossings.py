@@ -9,21 +9,23 @@ import numpy as np
 from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit, State
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit
 from nonholo.simulation._event import Event, checked_events, has_resets, values_at
 from nonholo.simulation._search import Part, Watch, piece_of, search
 
 
 def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
-    """Return what a run looks for, refused where parts of its steps are not defined."""
+    """Return what a run looks for, refused where parts of its steps are not defined, or none begins at an impact."""
     by_name = checked_events(owner, events)
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
         raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
-    watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_step, stepper))
-    if has_resets(by_name):
-        _check_walls(owner, stepper, by_name)
-    return watch
+    motion = stepper.motion
+    if not getattr(stepper, "with_poses", True):
+        refuse_resets(owner, by_name, "impacts of a run without poses: reconstruct=False")
+    if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
+        refuse_resets(owner, by_name, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
+    return Watch(by_name, motion.after_parts, functools.partial(_with_step, stepper))
 
 
 def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
@@ -31,15 +33,6 @@ def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
     if has_resets(events):
         remedy = "Leave the reset out, or run one body by `simulate`, `iterate` or `flow`."
         raise error(f"{owner}(events=...)", "have no reset", got, remedy)
-
-
-def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Event]) -> None:
-    """Refuse impacts of motions whose steps cannot begin at an impact."""
-    motion = stepper.motion
-    if not getattr(stepper, "with_poses", True):
-        refuse_resets(owner, events, "impacts of a run without poses: reconstruct=False")
-    if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
-        refuse_resets(owner, events, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
 
 
 def check_resets(events: dict[str, Event], there: Any) -> None:
@@ -58,14 +51,9 @@ def check_resets(events: dict[str, Event], there: Any) -> None:
                 raise error(f"Event(reset=...) of {name!r}", "depend on the pose alone", got, remedy)
 
 
-def begun_at(stepper: AbstractStepper[Any], states: Any) -> tuple[State, Outcome]:
-    """Return the state of a run that begins at a state of an orbit with poses, and the outcome."""
-    return stepper.start(states.as_start())
-
-
 def _with_step(stepper: AbstractStepper[Any], states: Any) -> Any:
     """Return a state with the step that begins there."""
-    state, outcome = begun_at(stepper, states)
+    state, outcome = stepper.start(states.as_start())
     split = np.split(state[: stepper.width], np.cumsum(list(stepper.columns.values()))[:-1])
     rows = tuple(row[None] for row in split)
     return states.with_step(stepper.orbit(rows, 0, 1, stepper.settle(rows)), outcome)

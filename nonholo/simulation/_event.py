@@ -86,17 +86,12 @@ class Impact:
         point = array("Impact(point=...)", place, normal.shape, "Pass as many numbers as the normal has.")
         assign(self, normal=normal, point=point)
 
-    @property
-    def has_plane(self) -> bool:
-        """Whether the normal is a spatial vector."""
-        return self.point is not None
-
     def check(self, where: str, states: AbstractOrbit) -> None:
         """Refuse a vector that is none of the space of a motion, and differences for a body without matrices."""
         group, system = states.group, states.system
         if self.normal is None and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
-        if self.has_plane:
+        if self.point is not None:
             size = states.body_velocity.shape[1] if group is None else group.point_size
             if len(self.point) != size or (group is None and self.point.any()):
                 got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
@@ -107,9 +102,9 @@ class Impact:
     def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
         place, dim = states.configuration[0], states.body_velocity.shape[1]
-        if self.has_plane and states.group is None:
+        if self.point is not None and states.group is None:
             return self.normal
-        if self.has_plane:
+        if self.point is not None:
             return Gravity(self.normal, self.point).covector(states.group, place)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
@@ -130,18 +125,13 @@ class Impact:
             states: One state, at the wall.
             direction: That of the gap on the way through the wall.
         """
-        after = states.reflection(self.covector(gap, states), self.restitution, direction)
-        if after is None:
-            self._check_direction(where, gap, states)
-        return after
-
-    def _check_direction(self, where: str, gap: Any, states: AbstractOrbit) -> None:
-        """Refuse a normal that points where the gap falls; a motion along the wall may only graze it."""
-        if self.normal is None or states.system.is_wide:
-            return
-        if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
+        normal = self.covector(gap, states)
+        after, is_own = states.reflection(normal, self.restitution, direction), self.normal is not None
+        # The motion may graze the wall, or the normal points where the gap falls.
+        if after is None and is_own and not states.system.is_wide and normal @ _slope_of(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."
             raise error(where, "have a normal in whose direction the function grows", got, remedy)
+        return after
 
 
 def _slope_of(gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:

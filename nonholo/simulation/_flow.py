@@ -10,7 +10,7 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
+from nonholo.simulation._contact import BodyFlights, flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_with_events, refuse_resets
 from nonholo.simulation._event import checked_events, has_resets
 from nonholo.simulation._options import FEW
@@ -223,7 +223,7 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: Events |
     return orbit, solution.fault
 
 
-def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: Events) -> tuple[Any, str]:
+def _flow_between_walls(opening: Any, time: np.ndarray, flights: Any, events: Events) -> tuple[Any, str]:
     """Return the orbit from a first state, with impacts, and what a function said that ended it."""
     if time[-1] < time[0]:
         refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")

@@ -1,7 +1,6 @@
 """The one loop over the steps of every kind of run, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
-import functools
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, TypeAlias
@@ -14,7 +13,7 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
-from nonholo.simulation._crossings import begun_at, check_resets
+from nonholo.simulation._crossings import check_resets
 from nonholo.simulation._search import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
@@ -235,8 +234,8 @@ def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows
     """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
     node, good = state.copy(), 0 if watch.reset_by is None else watch.cut - step
     keep_row(node, room, good)
-    begin = functools.partial(begun_at, stepper)
-    after, watch, outcome = after_contact(begin, watch, orbit_at(stepper, node, step + good))
+    there = orbit_at(stepper, node, step + good)
+    after, watch, outcome = after_contact(lambda states: stepper.start(states.as_start()), watch, there)
     if after is None:
         return node, good, outcome, watch
     write_first(after, part_of(room, good + 1, good + 2))
