@@ -230,7 +230,9 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     ) -> Any:
         """Return states that were reached, with all that they tell, as an orbit."""
         system, h = self.motion.system, np.float64(self.motion.time_step)
-        displacement, momentum, energy, residual = _decoded(system, h, q, v)
+        columns = compiled.decoded(_decode, system, h, q, v)
+        columns = columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
+        displacement, momentum, energy, residual = columns
         number = step + every * np.arange(len(q))
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
         return orbits.ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
@@ -277,13 +279,8 @@ def _advance(system: Any, h: Array, state: Motion, sign: Array, steps: Array) ->
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[2] == 0), one, start)
 
 
-def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
-    """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
-    columns = compiled.decoded(_decode, system, h, q, v)
-    return columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
-
-
 def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
+    """Return displacement, momentum, energy and residual of a state."""
     residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
     momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
     return system.places.displacement(v, h), momentum, energy, residual

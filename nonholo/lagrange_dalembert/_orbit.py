@@ -22,8 +22,6 @@ from nonholo.systems import AbstractCoordinateSystem, Start, refuse_table
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
-Labeled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
-"""Dimensions after `step`, numbers and attributes."""
 
 _SHARED: Labels = {
     "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
@@ -203,8 +201,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             raise error("Orbit.at(...)", "be called on a flow", got, remedy)
         return room("_flow").at(self, times)
 
-    def labeled_rows(self) -> dict[str, Labeled]:
-        """Return its rows by name, with their dimensions and meanings."""
+    def labeled_rows(self) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
+        """Return its rows by name: dimensions after `step`, numbers and attributes."""
         rows, labels = self.rows(), (self._labels | _SHARED).items()
         return {name: (axes, rows[name], {"long_name": meaning}) for name, (axes, meaning) in labels if name in rows}
 

@@ -185,14 +185,17 @@ class _Task(NamedTuple):
 
 
 def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
-    """Return the checked momentum at the first time and the pose, where one is solved for."""
+    """Return the momentum at the first time, which belongs to an admissible velocity, and the pose if it is needed."""
     if (numbers := len(task.time) * (task.system.rank + with_poses * task.system.group.pose_size)) > FEW:
         remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
         within_memory("flow(times=...)", 32.0 * numbers, remedy)
     first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
     reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demand is not None:
-        _check_momentum(first.demand, task.opening((reduced, pose)).momentum[0])
+        nearest = task.opening((reduced, pose)).momentum[0]
+        if (distance := np.linalg.norm(first.demand - nearest)) > _TOLERANCE * np.linalg.norm(nearest):
+            remedy = f"With the same components along the constraint it is {nearest.tolist()}."
+            raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)
     return reduced, pose
 
 
@@ -237,11 +240,3 @@ def _successful(task: _Task, orbit: Orbit, message: str) -> Orbit:
     forces = task.system.forces
     acting = "" if forces is None else f" under {forces.names}"
     return conclude_flow(orbit, task.time, task.tolerances, acting, message)
-
-
-def _check_momentum(momentum: Any, nearest: np.ndarray) -> None:
-    """Refuse a full momentum that no admissible velocity has."""
-    distance = np.linalg.norm(np.asarray(momentum) - nearest) if np.shape(momentum) == nearest.shape else 0.0
-    if distance > _TOLERANCE * np.linalg.norm(nearest):
-        remedy = f"With the same components along the constraint it is {nearest.tolist()}."
-        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)

@@ -26,8 +26,6 @@ _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are dou
 Stepper: TypeAlias = AbstractStepper[Any]
 Report: TypeAlias = Callable[[int, int], object]
 """Takes how many steps are done, and of how many."""
-Searched: TypeAlias = tuple[State, int, int, Watch]
-"""The state after the last good step, how many steps were good, the outcome, and what was seen."""
 
 
 class Run(NamedTuple):
@@ -171,21 +169,20 @@ class _Table:
 
 
 def blocks(
-    run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] | None = None
+    run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] = lambda _: None
 ) -> Iterator[tuple[int, Any, Reached]]:
     """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed.
 
     Each is its number, its orbit (None if it was known), and how the run stands at its end.
     """
-    standing = start
     for number in range(plan.blocks):
-        orbit, there = None, None if look_up is None else look_up(number)
+        orbit, there = None, look_up(number)
         if there is None:
-            orbit, there = compute_block(run.stepper, plan, number, standing, report)
+            orbit, there = compute_block(run.stepper, plan, number, start, report)
         else:
             report(there.step, plan.steps)
         yield number, orbit, there
-        if (standing := there).is_last:
+        if (start := there).is_last:
             return
 
 
@@ -214,8 +211,12 @@ def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, rep
     return _orbit_of(stepper, table, plan, standing), standing
 
 
-def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Searched:
-    """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
+def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Any:
+    """Take single steps up to an event that ends the motion, or through the step with an impact; search them.
+
+    Returns:
+        The state after the last good step, how many steps were good, the outcome, and what was seen.
+    """
     step, steps = stretch
     if watch.is_at_wall:
         write_first(state, room)
@@ -230,8 +231,8 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
     return state, states - 1, code, watch
 
 
-def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Searched:
-    """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
+def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Any:
+    """Do the same with the step from a node at a wall, or what is left of that with the impact that was seen last."""
     node, good = state.copy(), 0 if watch.reset_by is None else watch.cut - step
     keep_row(node, room, good)
     there = orbit_at(stepper, node, step + good)

@@ -51,20 +51,15 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
 def continue_run(run: Run, stream: "Stream") -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
-    _warn_of_other_versions(stream)
+    others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
+    if others and not stream.is_finished:
+        message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
+        warnings.warn(message, RuntimeWarning, stacklevel=3)
     with io.orbits.reporting_how_to_resume(
         stream.path, "The run", lambda: f"step {stream.steps_done()} of {stream.plan.steps}"
     ):
         end = _complete(run, stream)
     return run.finish(_load(run, stream, end), end.done)
-
-
-def _warn_of_other_versions(stream: "Stream") -> None:
-    """Warn if what is still to compute may differ in its last bits from a run with the versions of the store."""
-    others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
-    if others and not stream.is_finished:
-        message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
-        warnings.warn(message, RuntimeWarning, stacklevel=4)
 
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:

@@ -74,9 +74,8 @@ class Parameters(Mapping[str, Any]):
         for key in numbers.keys() - self.keys():
             near = difflib.get_close_matches(key, self, n=1)
             remedy = f"It has {', '.join(self)}." if self else "It has none: make it with parameters=..."
-            raise error(
-                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
-            )
+            remedy = f"Did you mean {near[0]}?" if near else remedy
+            raise error(where, "name parameters of the system", shown(key), remedy)
         changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
         return Parameters(self._numbers | changes)
 

@@ -29,8 +29,6 @@ _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 Reduced: TypeAlias = np.ndarray | dict[str, np.ndarray]
 Options: TypeAlias = dict[str, Any]
-Work: TypeAlias = tuple[Any, Plan, tuple[int, ...]]
-"""A motion, what is done with every member, and how wide its columns are."""
 _WHERE = "ensemble(reduce=...)"
 _ONE = ""  # the name of an array that comes without one
 
@@ -146,8 +144,8 @@ def _refuse(what: str, **arguments: Any) -> None:
     refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **arguments)
 
 
-def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
-    """Return the motion of flows, their plan, and how wide their columns are."""
+def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of flows, what is done with every member, and how wide its columns are."""
     reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), of_flow["rtol"]
@@ -162,8 +160,8 @@ def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options)
     return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * with_poses)
 
 
-def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
-    """Return the motion of runs, their plan, and how wide their columns are."""
+def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Options) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of runs, what is done with every member, and how wide its columns are."""
     del starts
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
     if isinstance(discrete, AbstractCoordinateDiscretization):

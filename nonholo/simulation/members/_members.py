@@ -285,16 +285,12 @@ def in_rows(motion: Any, start: Start, parameters: Any) -> tuple[Start, int, dic
     The start and the pose may be one for all members where something else has a row for each.
     """
     numbers, (pose, velocity) = checked_parameters(motion, parameters), motion.system.shapes
-    shapes = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
+    shapes: dict[str, Any] = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
     arrays = {"configuration": start.configuration, start.name: start.value}
     arrays = {name: value for name, value in arrays.items() if value is not None}
     several = [name for name, value in arrays.items() if len(shape_of(value)) != len(shapes[name])]
-    rows = {
-        name: array(
-            f"{start.owner}({name}=...)", value, (None, *shapes[name]) if name in several else shapes[name], _ONE
-        )
-        for name, value in arrays.items()
-    }
+    shapes |= {name: (None, *shapes[name]) for name in several}
+    rows = {name: array(f"{start.owner}({name}=...)", x, shapes[name], _ONE) for name, x in arrays.items()}
     count = _common({name: len(values) for name, values in numbers.items()} | {n: len(rows[n]) for n in several})
     whole = {n: x if n in several else np.broadcast_to(x, (count, *x.shape)) for n, x in rows.items()}
     return start._replace(value=whole[start.name], configuration=whole.get("configuration")), count, numbers
