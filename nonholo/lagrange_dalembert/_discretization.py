@@ -213,7 +213,9 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         system, h = self.motion.system, np.float64(self.motion.time_step)
         by_jax, sign = functools.partial(in_double, _advance, system, h), state[-1]
         table = tuple(column[: steps // every] for column in rows)
-        count, motion, code = compiled.advance(by_jax, system, h, self._motion(state), sign, every, table)
+        place, rate, _ = self.columns.values()
+        motion = self._places(state[:place])[0], state[place : place + rate], state[-1 - rate : -1]
+        count, motion, code = compiled.advance(by_jax, system, h, motion, sign, every, table)
         for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
             if count % every == 0:
                 column[count // every] = np.ravel(entries)
@@ -249,10 +251,6 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         q, v, before = motion
         impulse = np.zeros(self.motion.system.constraints)  # unknown; a store takes NaN for a chunk that is lost
         return np.concatenate([q.ravel(), v, impulse, before, [sign]])
-
-    def _motion(self, state: State) -> Motion:
-        place, rate, _ = self.columns.values()
-        return self._places(state[:place])[0], state[place : place + rate], state[-1 - rate : -1]
 
 
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion, Array, Array]:

@@ -184,11 +184,8 @@ def _sum(first: Callable[..., Array], second: Callable[..., Array]) -> Callable[
 
 def _inertia(system: GroupLagrangeDAlembert) -> Array:
     """Return the inertia operator: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
-
-    def at(x: Array) -> Array:
-        return system.discrete_lagrangian(system.group.exp(x), jnp.ones(()))
-
-    return jax.hessian(at)(jnp.zeros(system.group.dim))
+    action = jax.hessian(lambda x: system.discrete_lagrangian(system.group.exp(x), jnp.ones(())))
+    return action(jnp.zeros(system.group.dim))
 
 
 @functools.lru_cache(maxsize=64)

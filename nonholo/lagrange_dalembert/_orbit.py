@@ -337,16 +337,13 @@ class CoordinateMotion:
         impulses = rows["multipliers"] if system.constraints else rows["body_velocity"][:, :0]  # none are stored
         rows["multipliers"] = impulses if impulses is None else impulses[:last]
         shapes = {name: None if rows[name] is None else rows[name].shape[1:] for name in self.columns}
-        if shapes != self._shapes():
+        q, v = system.shapes
+        demand = {"configuration": q, "displacement": None if last is None else q, "body_velocity": v, "momentum": v}
+        demand = dict.fromkeys(self.columns, ()) | demand | {"multipliers": (system.constraints,)}
+        if shapes != demand:
             remedy = "The store was edited: copy it again from its source, or run it again."
             raise error("load_orbit(path=...)", f"hold the columns of {system.name!r}", f"shapes {shapes}", remedy)
         return ORBITS[system.orbits](**rows, system=system, time_step=self.time_step)
-
-    def _shapes(self) -> dict[str, tuple[int, ...] | None]:
-        q, v = self.system.shapes
-        places = {"configuration": q, "displacement": None if self.time_step is None else q}
-        rates = {"body_velocity": v, "momentum": v, "multipliers": (self.system.constraints,)}
-        return {"time": (), **places, **rates, "energy": (), "constraint_residual": ()}
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

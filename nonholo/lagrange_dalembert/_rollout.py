@@ -87,8 +87,7 @@ def roll(
     begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near), nothing)
     nodes = run_nodes(step, begin, rows, sizes, work)
 
-    decoded = functools.partial(_decoded, system, h)
-    states = jax.vmap(decoded)(nodes.x, nodes.y[0], nodes.control)
+    states = jax.vmap(functools.partial(_decoded, system, h))(nodes.x, nodes.y[0], nodes.control)
     acting = jnp.zeros_like(states[0]) if rows is None else nodes.control
     good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in (*states, acting))
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code)

@@ -188,13 +188,12 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         """
         if potential is None and force is None:
             return self
-        force = self._with_force(force)
+        force, lagrangian = self._with_force(force), self.lagrangian
         potential = tracing.with_parameters(potential, 1) if self.parameters else potential
         if potential is not None:
-            q = jax.ShapeDtypeStruct((self.dimension,), float)
-            of = f"{self.dimension} coordinates"
+            q, of = jax.ShapeDtypeStruct((self.dimension,), float), f"{self.dimension} coordinates"
             potential = tracing.checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
-        lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
+            lagrangian = _with_potential(lagrangian, potential, last=bool(self.parameters))
         return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
@@ -225,8 +224,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:
     """Return a Lagrangian less a potential; both may take parameters last."""
-    if potential is None:
-        return lagrangian
 
     @functools.wraps(lagrangian)  # whose signature says whether the time is passed
     def less(q: Array, v: Array, *rest: Any) -> Array:

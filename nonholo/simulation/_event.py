@@ -242,7 +242,8 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
     by_name: dict[str, Event] = {}
     for position, each in enumerate(events):
         event = each if isinstance(each, Event) else Event(each)
-        name = event.name or _name_of(event.function, position)
+        own = getattr(event.function, "__name__", None)
+        name = event.name or (str(own) if is_name(own) else f"event {position}")
         if name in by_name:
             raise error(where, "have different names", f"{name!r} twice", "Pass Event(function, name=...).")
         by_name[name] = event
@@ -252,11 +253,6 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 def has_resets(events: dict[str, Event]) -> bool:
     """Return whether an event changes the motion."""
     return any(event.reset is not None for event in events.values())
-
-
-def _name_of(function: Callable[..., Any], position: int) -> str:
-    name = getattr(function, "__name__", None)
-    return str(name) if is_name(name) else f"event {position}"
 
 
 def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarray, "K"]:

@@ -138,7 +138,11 @@ class _Table:
         most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)
         if self.fine:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
-            self._reserve(1 + (step - self.begin + count) // self.every)
+            if (places := 1 + (step - self.begin + count) // self.every) > (have := len(self.rows[0])):
+                longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
+                for column, old in zip(longer, self.rows, strict=True):
+                    column[:have] = old
+                self.rows = longer
         elif past == 0 and most >= self.every:
             each, count = self.every, min(most // self.every, 1 + _NEAR // self.stepper.width)
         else:
@@ -147,14 +151,6 @@ class _Table:
             return each * count, each, empty_rows(self.stepper, 1 + count)
         first = (step - self.begin) // each
         return each * count, each, part_of(self.rows, first, first + count + 1)
-
-    def _reserve(self, places: int) -> None:
-        """Have at least this many places."""
-        if places > (have := len(self.rows[0])):
-            longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
-            for column, old in zip(longer, self.rows, strict=True):
-                column[:have] = old
-            self.rows = longer
 
     def take(self, room: Rows, step: int, good: int, each: int) -> None:
         """Keep the saved states among the rows of a call, if they are not in place; settle them while they are near."""

@@ -24,7 +24,7 @@ from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
-from nonholo.simulation.members._members import Members, ScalarMembers, are_others, inertias_of, refusal
+from nonholo.simulation.members._members import Members, ScalarMembers, are_others, inertias_of, naming
 from nonholo.simulation.members._result import Ensemble, log_of, stack_rows, watched_block
 from nonholo.systems import in_coordinates
 
@@ -244,10 +244,8 @@ def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, re
 
 def _alone(members: Members, starts: First, plan: Plan, member: int) -> tuple[Any, int]:
     run = _run_alone if plan.times is None else _flow_alone
-    try:
+    with naming(member):
         return run(members.of(member), starts.of(member), plan)
-    except ValueError as failure:
-        raise refusal(member, failure) from failure
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:

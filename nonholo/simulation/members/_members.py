@@ -1,8 +1,9 @@
 """The members of an ensemble: one motion, the parameters in which each differs, their closed form and their starts."""
 
+import contextlib
 import dataclasses
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -160,9 +161,13 @@ def _unknown(name: str, kind: str, names: list[str]) -> ValueError:
     return error("ensemble(parameters=...)", requirement, shown(name), remedy)
 
 
-def refusal(member: int, failure: ValueError) -> ValueError:
-    """Return the error of one member, with its number."""
-    return ValueError(f"{failure} This is member {member}.")
+@contextlib.contextmanager
+def naming(member: int) -> Iterator[None]:
+    """Refuse one member with its number."""
+    try:
+        yield
+    except ValueError as failure:
+        raise ValueError(f"{failure} This is member {member}.") from failure
 
 
 class ScalarMembers:
@@ -268,10 +273,8 @@ def check_systems(members: Members) -> None:
     joint = members.joint_system
     is_clear = not members.of_system or (joint is not None and joint.is_clear)  # that all of them, or each, can be made
     for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))):
-        try:
-            members.of(int(member))
-        except ValueError as failure:
-            raise refusal(int(member), failure) from None
+        with naming(member):
+            members.of(member)
 
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
@@ -345,10 +348,8 @@ def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) ->
     """Return the checked start of one member, refused with its number."""
     pose = None if start.configuration is None else start.configuration[member]
     own = start._replace(value=start.value[member], configuration=pose)
-    try:
+    with naming(member):
         return members.of(member).first(own, with_poses=with_poses)
-    except ValueError as failure:
-        raise refusal(member, failure) from None
 
 
 def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
@@ -357,10 +358,8 @@ def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
     if start.configuration is None:
         return np.broadcast_to(pose, (len(members), pose.shape[1]))
     for member, g in enumerate(start.configuration):
-        try:
+        with naming(member):
             in_group(f"{start.owner}(configuration=...)", system.group, g)
-        except ValueError as failure:
-            raise refusal(member, failure) from None
     frames = system.frame if len(pose) == 1 else system.group.matrix_from_pose(pose)
     return system.group.pose_from_matrix(start.configuration @ frames)
 
