@@ -29,9 +29,6 @@ from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
 
-Motion = tuple[Array, Array, Array]
-"""Place, velocity of its step, velocity of the step before."""
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
@@ -247,20 +244,23 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         """Return places from flat ones."""
         return rows.reshape(-1, *self.motion.system.place_shape)
 
-    def _state(self, motion: Motion, sign: Any) -> State:
+    def _state(self, motion: tuple[Array, Array, Array], sign: Any) -> State:
         q, v, before = motion
         impulse = np.zeros(self.motion.system.constraints)  # unknown; a store takes NaN for a chunk that is lost
         return np.concatenate([q.ravel(), v, impulse, before, [sign]])
 
 
-def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion, Array, Array]:
-    """Return the start with a momentum, by the root next to the velocity v."""
+def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[tuple[Array, Array, Array], Array, Array]:
+    """Return the start with a momentum, by the root next to the velocity v, with its orientation and outcome.
+
+    A start is a place, the velocity of its step, and the velocity of the step before.
+    """
     sign, _ = orientation(system, q, v, h)
     first, _, code = solve(system, h, q, p, v, v, sign)
     return (q, first, first), sign, code
 
 
-def _advance(system: Any, h: Array, state: Motion, sign: Array, steps: Array) -> tuple:
+def _advance(system: Any, h: Array, state: tuple[Array, Array, Array], sign: Array, steps: Array) -> tuple:
     """Take steps, at most `ROWS`; return how many were good, the end, the outcome, and the states with impulses."""
 
     def one(carry: tuple) -> tuple:

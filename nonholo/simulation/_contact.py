@@ -16,7 +16,7 @@ import numpy as np
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
 from nonholo.continuous import ContinuousFlow, Problem, Solved, States, solver_of
-from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.orbit import Crossings, Orbit
 from nonholo.simulation._crossings import between_times, of_requested
 from nonholo.simulation._search import Events, Watch, search
 
@@ -265,5 +265,4 @@ def _whole(first: Any, time: np.ndarray, flights: Any, watch: Watch, until: floa
         until = float(log[log.stopped_by].time[-1])
     motion = flights.joined([first.with_headings(None), *watch.impacts], until)
     orbit = dataclasses.replace(first, **motion).at(time[time <= until])
-    crossings = tuple(of_requested(part, time, 1.0, **motion) for part in log.found)
-    return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, crossings, log.stopped_by))
+    return dataclasses.replace(orbit, outcome=outcome, events=of_requested(log, time, 1.0, **motion))

@@ -127,9 +127,8 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     watch, last = search(Watch(events, between_times(looks, forward)), looks)
     outcome, log = Outcome.successful if watch.stopped_by else looks.outcome, watch.log()
     count = int(np.searchsorted(outputs, forward * looks.time[last - 1], "right"))
-    parts = tuple(of_requested(part, outputs, forward) for part in log.found)
-    events_there = EventLog(log.names, parts, log.stopped_by)
-    return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=events_there)
+    log = of_requested(log, outputs, forward)
+    return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=log)
 
 
 def between_times(looks: AbstractOrbit, forward: float) -> Part:
@@ -145,9 +144,11 @@ def between_times(looks: AbstractOrbit, forward: float) -> Part:
     return between
 
 
-def of_requested(crossings: Crossings, outputs: np.ndarray, forward: float, **fields: Any) -> Crossings:
+def of_requested(log: EventLog, outputs: np.ndarray, forward: float, **fields: Any) -> EventLog:
     """Return crossings with the numbers of the requested times before them, and other fields of their states."""
-    times = forward * crossings.time
-    step = np.searchsorted(outputs, times, "right") - 1
-    gaps = np.append(np.diff(outputs), np.inf)
-    return crossings.of_steps(step, (times - outputs[step]) / gaps[step], **fields)
+    gaps, each = np.append(np.diff(outputs), np.inf), []
+    for crossings in log.found:
+        times = forward * crossings.time
+        step = np.searchsorted(outputs, times, "right") - 1
+        each.append(crossings.of_steps(step, (times - outputs[step]) / gaps[step], **fields))
+    return dataclasses.replace(log, found=tuple(each))

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flags, flow_times, flow_tolerances, is_moderate, within_memory
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances, within_memory
 from nonholo.base.progress import telling
-from nonholo.base.results import Outcome, conclude_flow
+from nonholo.base.results import conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import BodyFlights, flow_through_impacts
@@ -215,12 +215,9 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: Events |
     states = solution.states
     if not reconstruct:  # nor is the memory kept, of which the momenta are a part
         states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
-    count, is_finite = len(states.momenta), is_moderate(states.momenta)
-    is_finite = is_finite and (states.poses is None or is_moderate(states.poses, np.inf))
-    outcome = solution.outcome or (Outcome.successful if is_finite else Outcome.nonfinite)
-    motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
-    rows = {"reduced_momentum": states.momenta, "cayley": None, "canonical_pose": states.poses, "turned": states.turned}
-    orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome).on_group()
+    time = time[: len(states.momenta)]
+    motion, rows = ContinuousFlow(task.system, (time[0], time[-1]), solution.at), (states.momenta, None, states.poses)
+    orbit = Orbit(motion, time, *rows, solution.outcome, turned=states.turned).on_group()
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
     return orbit, solution.fault

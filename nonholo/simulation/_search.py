@@ -16,8 +16,6 @@ Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
 
 Events = dict[str, Event]
-Values = Float[np.ndarray, "E K"]
-"""Of each event, a row, at each state."""
 _PIECE, _NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at once: states, numbers in an array
 _ROUNDING = 2.0**-54  # of a step, beside its end
 _TOUCH = 5e-324  # the value of an event at a wall, with the sign of the side where the body is
@@ -97,7 +95,7 @@ class Watch:
         heading = None if there.turned is None else there.turned[-1]
         return dataclasses.replace(self, values=values, heading=heading, sliding=False)
 
-    def values_there(self, states: Any) -> Values:
+    def values_there(self, states: Any) -> Float[np.ndarray, "E K"]:
         """Return the values of all events at states; along a wall the one before."""
         values = values_of(self.events, states)
         return values if self.values is None else np.where(self.sliding, self.values, values)
@@ -200,8 +198,8 @@ def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np
     return dataclasses.replace(crossings, after=crossings.states if after is None else after)
 
 
-def values_of(events: Events, states: AbstractOrbit) -> Values:
-    """Return the values of all events at states."""
+def values_of(events: Events, states: AbstractOrbit) -> Float[np.ndarray, "E K"]:
+    """Return the values of all events, a row for each, at states."""
     values = [values_at(name, event, states) if len(states) else np.empty(0) for name, event in events.items()]
     return np.array(values).reshape(len(events), len(states))
 
@@ -221,7 +219,7 @@ class Crossed(NamedTuple):
 
 
 def find_crossings(
-    events: Events, states: AbstractOrbit, values: Values, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
+    events: Events, states: AbstractOrbit, values: np.ndarray, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
 ) -> Crossed:
     """Return where motions cross, none of it after a crossing that ends one.
 
@@ -246,7 +244,7 @@ def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
 
 
 def _cut_ends(
-    events: Events, states: AbstractOrbit, values: Values, owner: np.ndarray, places: Crossed, ending: Any, part: Part
+    events: Events, states: Any, values: np.ndarray, owner: np.ndarray, places: Crossed, ending: Any, part: Part
 ) -> Crossed:
     """Leave out crossings after those that end a motion, by where they are in its last step."""
     _, stopper, end = places

@@ -31,8 +31,6 @@ from nonholo.lagrange_dalembert.compiled._scalars import (
 
 LINEAR = {"add", "sub", "neg"}
 BILINEAR = {"mul", "div"}
-Rates = list[tuple[Scalar, Scalar]]
-"""Arguments a and g in the rate of a function, the sum of a' g."""
 
 
 def _over(f: Formulas, above: float, below: Scalar) -> Scalar:
@@ -66,8 +64,8 @@ _SLOPES: dict[str, Callable[[Formulas, Scalar, Scalar], Scalar]] = {
 }
 
 
-def rates_of(f: Formulas, y: Scalar) -> Rates:
-    """Return how the result of a function moves with its arguments.
+def rates_of(f: Formulas, y: Scalar) -> list[tuple[Scalar, Scalar]]:
+    """Return how the result of a function moves with its arguments: those a and g in its rate, the sum of a' g.
 
     Raises:
         UntranslatableError: It has kinks, as a choice, a comparison and a rounding do.
@@ -161,7 +159,7 @@ class Expansion:
     """
 
     def __init__(self, f: Formulas, inputs: list[Scalar], rates: list[Scalar]) -> None:
-        self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Rates]()
+        self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Any]()
         self.order = self._order_of(f, [each for each in rates if each.value is None])
         moving = [a for pairs in self.functions.values() for a, _ in pairs]
         self.places = {each: i for i, each in enumerate([*inputs, *self.order])}

@@ -232,19 +232,14 @@ def join_blocks(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
         arrays = result if isinstance(result, dict) else {_ONE: result}
         rows = {name: _check_rows(size, value) for name, value in arrays.items()}
         whole = whole or {name: np.empty((members, *value.shape[1:]), value.dtype) for name, value in rows.items()}
-        _check_same(whole, rows)
+        ours, first = ({name: value.shape[1:] for name, value in block.items()} for block in (rows, whole))
+        if ours != first:
+            raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
         for name, value in rows.items():
             whole[name] = whole[name].astype(np.result_type(whole[name], value), copy=False)
             whole[name][begin : begin + size] = value
         begin += size
     return whole.get(_ONE, whole)
-
-
-def _check_same(whole: dict[str, np.ndarray], rows: dict[str, np.ndarray]) -> None:
-    """Refuse a block with other names or shapes than the first one."""
-    ours, first = ({name: value.shape[1:] for name, value in block.items()} for block in (rows, whole))
-    if ours != first:
-        raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
 
 
 def _check_rows(size: int, result: object) -> np.ndarray:
