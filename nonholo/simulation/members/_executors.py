@@ -104,17 +104,19 @@ def run_members(members: Members, starts: First, plan: Plan, report: Report = la
         plan: The plan of the run.
         report: Called with the number of members that are done.
     """
-    if plan.times is not None:
-        run = run_by_series if _has_series(members, plan) else run_one_by_one
-    else:
-        run = run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
-    return run(members, starts, plan, threads_to_use(), report)
+    threads = threads_to_use()
+    if plan.times is None and are_side_by_side(members, plan):  # events are sought in all steps
+        whole = plan if plan.events is None else plan._replace(every=1)
+        block = run_in_lanes(members, starts, whole, threads, report)
+        return block if plan.events is None else watched_block(plan.events, block, plan.every)
+    run = run_by_series if _has_series(members, plan) else run_one_by_one
+    return run(members, starts, plan, threads, report)
 
 
 def _has_series(members: Members, plan: Plan) -> bool:
     """Return whether flows are solved side by side; under forces those of one body are."""
-    system, times = members.discrete.system, cast(np.ndarray, plan.times)
-    if members.in_coordinates:
+    system, times = members.discrete.system, plan.times
+    if times is None or members.in_coordinates:
         return False
     alike = system.forces is None or not members.of_system
     return plan.with_poses and alike and has_series(system, times[-1] - times[0])
@@ -126,14 +128,7 @@ def are_side_by_side(members: Members, plan: Plan) -> bool:
 
 
 def run_in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
-    """Run members of a closed form side by side; events are sought in all of their steps."""
-    if plan.events is None:
-        return _in_lanes(members, starts, plan, threads, report)
-    return watched_block(plan.events, _in_lanes(members, starts, plan._replace(every=1), threads, report), plan.every)
-
-
-def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
-    """Run members of a closed form, 32 at a time, or by JAX."""
+    """Run members of a closed form side by side, 32 at a time, or by JAX, without their events."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, with_poses=plan.with_poses)
     lanes = _Lanes(scalar.body, scalar.fields, scalar.to_canonical)
@@ -156,7 +151,7 @@ def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report:
     batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.numbers[:2])
     if starts.demand is not None:
         free, probe = starts._replace(demand=None), plan._replace(steps=1, every=1, with_poses=True)
-        _refuse_other_starts(batch, starts.demand, _in_lanes(members, free, probe, threads, lambda _: None))
+        _refuse_other_starts(batch, starts.demand, run_in_lanes(members, free, probe, threads, lambda _: None))
     return batch
 
 
@@ -226,9 +221,11 @@ def _advance_by_jax(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.Mem
 def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members alone, each as it runs by `simulate` or `flow`."""
     count, orbits, good = len(members), {}, np.zeros(len(members), dtype=np.int64)
+    run = _run_alone if plan.times is None else _flow_alone
 
     def work(part: slice, _: np.ndarray) -> None:
-        orbits[part.start], good[part.start] = _alone(members, starts, plan, part.start)
+        with naming(member := part.start):
+            orbits[member], good[member] = run(members.of(member), starts.of(member), plan)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
     is_soon = stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE)
@@ -240,12 +237,6 @@ def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, re
     branch = getattr(stepper, "branch", PRINCIPAL.name)
     batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.numbers[:2], branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
-
-
-def _alone(members: Members, starts: First, plan: Plan, member: int) -> tuple[Any, int]:
-    run = _run_alone if plan.times is None else _flow_alone
-    with naming(member):
-        return run(members.of(member), starts.of(member), plan)
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:

@@ -143,22 +143,17 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     kind, arrays = type(motion.system if in_coordinates(motion) else motion.system.inside).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
-            raise _unknown(name, kind, [*numbers])
+            requirement, remedy = "name fields of the system", f"{kind} has {', '.join(numbers)}."
+            if [*numbers] == [STEP]:
+                requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
+                remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
+            elif name == STEP:
+                remedy = "A flow has no time step."
+            raise error("ensemble(parameters=...)", requirement, shown(name), remedy)
         shape = np.shape(numbers[name])
         where = f"ensemble(parameters={{{name!r}: ...}})"
         arrays[name] = array(where, value, (None, *shape), "Pass one value for each member.")
     return arrays
-
-
-def _unknown(name: str, kind: str, names: list[str]) -> ValueError:
-    """Return the error of a parameter that is none."""
-    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(names)}."
-    if names == [STEP]:
-        requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
-        remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
-    elif name == STEP:
-        remedy = "A flow has no time step."
-    return error("ensemble(parameters=...)", requirement, shown(name), remedy)
 
 
 @contextlib.contextmanager
@@ -326,7 +321,9 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
     Those that are computed side by side start at once.
     """
     if start.name == "displacement" or not at_once:
-        return _one_by_one(members, start, with_poses=with_poses)
+        each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
+        numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
+        return First(numbers, None if each[0].demand is None else np.stack([first.demand for first in each]))
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
         part = slice(begin, begin + _CHUNK)
@@ -335,13 +332,6 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
             _of_one(members, start, begin + int(np.argmax(bad)), with_poses=with_poses)
     full = start.name == "momentum" and start.value.shape[1] != 2
     return First((momenta, _poses(members, start)), start.value if full else None)
-
-
-def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> First:
-    each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
-    numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    demand = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
-    return First(numbers, demand)
 
 
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:

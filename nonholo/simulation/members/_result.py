@@ -437,12 +437,8 @@ def joined_blocks(whole: Members, blocks: Sequence[Ensemble]) -> Ensemble:
 
 
 def _joined_log(whole: Members, logs: Sequence[MemberEvents]) -> MemberEvents:
-    crossings = tuple(
-        MemberCrossings(
-            np.concatenate([part.count for part in column]),
-            joined_blocks(whole, [part.first for part in column]),
-            joined_blocks(whole, [part.last for part in column]),
-        )
-        for column in zip(*(log.found for log in logs), strict=True)
-    )
-    return MemberEvents(logs[0].names, crossings, np.concatenate([log.stopped_by for log in logs]))
+    crossings = []
+    for column in zip(*(log.found for log in logs), strict=True):
+        ends = (joined_blocks(whole, [getattr(part, end) for part in column]) for end in ("first", "last"))
+        crossings.append(MemberCrossings(np.concatenate([part.count for part in column]), *ends))
+    return MemberEvents(logs[0].names, tuple(crossings), np.concatenate([log.stopped_by for log in logs]))
