@@ -139,7 +139,7 @@ class OutcomeError(RuntimeError):
 def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -> Any:
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome:
-        where = f"Step {good + 1} of {steps}" if len(orbit) else "Start of the run"
+        where = f"Step {good + 1} of {steps}" if good or len(orbit) else "Start of the run"
         route = getattr(orbit.motion, "route", None) if orbit.outcome == Outcome.nonfinite else None
         faults = " ".join(getattr(route, "faults", {}).values())
         raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, faults)

@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.base.checks import count, error, within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
+from nonholo.base.results import OUTCOMES, Outcome, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
@@ -299,12 +299,9 @@ def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
 def _orbits(run: Run, start: Reached, rows: int) -> Iterator[Any]:
     with progress_bar("steps", run.progress) as report:
         for _, orbit, standing in blocks(run, run.plan(rows), start, report):
-            raises = run.throw and orbit.outcome != Outcome.successful
-            if len(orbit) or not raises:  # an event may end the motion before the first state of a block
+            if len(orbit) or not (run.throw and orbit.outcome):  # an event may end it before the first state of a block
                 yield orbit
-            if raises:
-                where = f"Step {standing.step + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
-                raise OutcomeError(orbit.outcome, where, orbit)
+            run.finish(orbit, standing.step)
 
 
 def rows_of_block(where: str, run: Run, block_steps: int | None) -> int:

@@ -259,12 +259,10 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:
-    """Return the value of the start and the pose; of traced ones the shapes are checked."""
+    """Return the value of the start and the pose; of traced ones the shapes alone are checked."""
     system, group = discrete.system, discrete.system.group
     if not any(map(is_traced, (start.value, start.configuration, *jax.tree.leaves(discrete)))):
-        g = start.pose(group)
-        start.momentum(system, g)
-        return array(start.where, start.value, shape_of(start.value)), g
+        start.momentum(system, start.pose(group))
     where, remedy = f"{start.owner}(configuration=...)", f"Pass an element of {group} as a matrix."
     pose = group.identity if start.configuration is None else start.configuration
     g = array(where, pose, group.identity.shape, remedy)
