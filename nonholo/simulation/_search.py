@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import operator
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -165,13 +165,11 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         sides = [-event.direction * (event.reset is not None) for event in watch.events.values()]
         values[:, :1] += _TOUCH * np.reshape(sides, (-1, 1)) * (values[:, :1] == 0)
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
-    places = find_crossings(watch.events, stretch, values, owner, left, watch.part)
-    first, count = int(places.stopper[0]), len(stretch)
-    if first >= 0:
-        count = 1 + int(places.end[0] - stretch.step[0])
+    places, (first,), (end,) = find_crossings(watch.events, stretch, values, owner, left, watch.part)
+    count = len(stretch) if first < 0 else 1 + int(end - stretch.step[0])
     crossings = tuple(
         _crossings_of(watch, first, position, stretch, row, at)
-        for position, (row, at) in enumerate(zip(values, places.at, strict=True))
+        for position, (row, at) in enumerate(zip(values, places, strict=True))
     )
     last = values[:, count - 1 : count] if count else None
     heading = None if stretch.turned is None else float(stretch.turned[count - 1])
@@ -204,24 +202,10 @@ def values_of(events: Events, states: AbstractOrbit) -> Float[np.ndarray, "E K"]
     return np.array(values).reshape(len(events), len(states))
 
 
-class Crossed(NamedTuple):
-    """Where some motions cross, up to their ends.
-
-    Attributes:
-        at: For every event the states before its crossings.
-        stopper: The position of the event that ends each motion, -1 where none does.
-        end: The step with which it ends.
-    """
-
-    at: list[Int[np.ndarray, "C"]]
-    stopper: Int[np.ndarray, "M"]
-    end: Int[np.ndarray, "M"]
-
-
 def find_crossings(
     events: Events, states: AbstractOrbit, values: np.ndarray, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
-) -> Crossed:
-    """Return where motions cross, none of it after a crossing that ends one.
+) -> tuple[list[Int[np.ndarray, "C"]], Int[np.ndarray, "M"], Int[np.ndarray, "M"]]:
+    """Find where motions cross, none of it after a crossing that ends one.
 
     Args:
         events: The events, by name.
@@ -230,11 +214,15 @@ def find_crossings(
         owner: The motion of each state.
         left: The number of further crossings of every event that ends a motion; infinite if none does.
         part: Gives the states after parts of steps.
+
+    Returns:
+        For every event the states before its crossings; of each motion the position of the event that ends it, -1 where
+        none does, and the step with which it ends.
     """
     is_same, count = owner[1:] == owner[:-1], left.shape[1]
     at = [np.flatnonzero(changes(event, row) & is_same) for event, row in zip(events.values(), values, strict=True)]
     ending = [x[_rank(owner[x]) == most[owner[x]] - 1] for x, most in zip(at, left, strict=True)]
-    places = Crossed(at, np.full(count, -1), np.zeros(count, dtype=int))
+    places = at, np.full(count, -1), np.zeros(count, dtype=int)
     return _cut_ends(events, states, values, owner, places, ending, part) if any(map(len, ending)) else places
 
 
@@ -244,14 +232,14 @@ def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
 
 
 def _cut_ends(
-    events: Events, states: Any, values: np.ndarray, owner: np.ndarray, places: Crossed, ending: Any, part: Part
-) -> Crossed:
+    events: Events, states: Any, values: np.ndarray, owner: np.ndarray, places: Any, ending: Any, part: Part
+) -> Any:
     """Leave out crossings after those that end a motion, by where they are in its last step."""
-    _, stopper, end = places
+    each_at, stopper, end = places
     limit, moment = np.full(len(end), len(owner)), np.full(len(end), np.inf)
     for at in ending:
         np.minimum.at(limit, owner[at], at)
-    early = [at[at <= limit[owner[at]]] for at in places.at]
+    early = [at[at <= limit[owner[at]]] for at in each_at]
     within = [at[at == limit[owner[at]]] for at in early]
     crossings = [
         locate(name, event, states, row, at, part)
@@ -263,7 +251,7 @@ def _cut_ends(
         who = owner[at[ends]]
         moment[who], stopper[who], end[who] = past[ends], event, crossings[event].step[ends]
     late = [at[past > moment[owner[at]]] for at, past in zip(within, moments, strict=True)]
-    return Crossed([np.setdiff1d(at, out) for at, out in zip(early, late, strict=True)], stopper, end)
+    return [np.setdiff1d(at, out) for at, out in zip(early, late, strict=True)], stopper, end
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:

@@ -52,15 +52,6 @@ class Values(NamedTuple):
     shapes: list[tuple[int, ...]]
 
 
-class Programs(NamedTuple):
-    """The functions of `CoordinateBody`, and how many numbers `settle` writes."""
-
-    arrive: Any
-    settle: Any
-    correct: Any
-    border: int
-
-
 def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int = 0) -> Program:
     """Translate a function of arrays with these shapes, the last ones of which vary.
 
@@ -82,13 +73,13 @@ def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
-def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> Programs | None:
+def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> tuple[Any, Any, Any, int] | None:
     """Return the compiled equations of a step of a family of systems, with places of a shape and n velocities.
 
     Or, at a node, those of the velocity that belongs to a momentum: then nothing moves on arrival.
 
     Returns:
-        None if JAX must solve them.
+        The functions of `CoordinateBody`, and how many numbers `settle` writes; None if JAX must solve them.
     """
     s = family.constraints
     equations_of = _newton.of_node if at_node else _newton.of_step
@@ -121,7 +112,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         code, border = code_of(family, ("step", at_node), write)
     except UntranslatableError:
         return None
-    return Programs(FUNCTION(code["arrive"]), FUNCTION(code["settle"]), FUNCTION(code["correct"]), border)
+    return FUNCTION(code["arrive"]), FUNCTION(code["settle"]), FUNCTION(code["correct"]), border
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
@@ -155,12 +146,13 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     code, place, n = programs(system.form, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
+    *functions, border = code
     size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.numbers_of_formulas)]
     departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
-    inputs, equations = np.zeros(code.border + size), np.zeros(size * size + 2 * size + 2)
+    inputs, equations = np.zeros(border + size), np.zeros(size * size + 2 * size + 2)
     rows = equations[:-2].reshape(size + 2, size)
-    parts = inputs[code.border :], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
-    return CoordinateBody(*code[:3], departure, arrival, inputs, *parts, place, n)
+    parts = inputs[border:], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
+    return CoordinateBody(*functions, departure, arrival, inputs, *parts, place, n)
 
 
 def set_out(system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:

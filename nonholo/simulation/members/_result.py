@@ -355,10 +355,9 @@ def watched_block(events: dict[str, Event], block: Ensemble, every: int | None) 
         motion = block.members.of(int(group[0]))
         states, member = _flat(motion, columns, group)
         values, left = values_of(events, states), np.repeat(limits[:, None], len(group), axis=1)
-        places = find_crossings(events, states, values, member - group[0], left, motion.after_parts)
-        over = group[places.stopper >= 0]
-        stopper[group], end[over] = places.stopper, places.end[places.stopper >= 0]
-        for place, ((name, event), row, at) in enumerate(zip(events.items(), values, places.at, strict=True)):
+        places, stops, last_steps = find_crossings(events, states, values, member - group[0], left, motion.after_parts)
+        stopper[group], end[group[stops >= 0]] = stops, last_steps[stops >= 0]
+        for place, ((name, event), row, at) in enumerate(zip(events.items(), values, places, strict=True)):
             counts[place] += np.bincount(member[at], minlength=len(block))
             first, last = (each[np.unique(member[each], return_index=True)[1]] for each in (at, at[::-1]))
             outer = np.union1d(first, last)
