@@ -128,11 +128,6 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         """Where it moves."""
         return Poses(self.group, self.is_driven)
 
-    @property
-    def energy_argument(self) -> str:
-        """The name of the argument that gives the energy."""
-        return "discrete_lagrangian" if self.lagrangian is None else "lagrangian"
-
     @functools.cached_property
     def plain(self) -> Any:
         """The system as the equations see it: Lagrangians of the pose and the velocity or displacement."""

@@ -143,7 +143,7 @@ def velocity(
 
 def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the momentum and what follows the matrix in `_kinetics`, of a Lagrangian that determines accelerations."""
-    what = _argument(system, system.energy_argument)
+    what = _argument(system, "discrete_lagrangian" if system.lagrangian is None else "lagrangian")
     value, *gradients, matrix, units, A, residual = _at(_kinetics, system, q, v)
     if not all(is_moderate(x, np.inf) for x in (value, *gradients)):
         number, *slopes = (x.tolist() for x in (value, *gradients))

@@ -127,7 +127,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     of_time: ClassVar[dict[str, int]] = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
-    energy_argument: ClassVar[str] = "lagrangian"
     has_limit: ClassVar[bool] = False
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
@@ -135,8 +134,10 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     def __post_init__(self) -> None:
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
-        parameters, coordinates = tracing.Parameters(self.parameters), _names(self.coordinates, dimension)
-        assign(self, dimension=dimension, parameters=parameters, coordinates=coordinates)
+        coordinates = tuple(f"q{i}" for i in range(1, dimension + 1))
+        if not isinstance(self.coordinates, tuple) or self.coordinates:
+            coordinates = names(_argument("coordinates"), self.coordinates, dimension)
+        assign(self, dimension=dimension, parameters=tracing.Parameters(self.parameters), coordinates=coordinates)
         text(_argument("name"), self.name)
         _check_heading(_argument("heading"), self.heading, self.coordinates)
         if not callable(self.outline):
@@ -145,10 +146,7 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         for name in ("discrete_lagrangian", "discrete_constraints"):
             assign(self, **{name: tracing.with_time_step(getattr(self, name), len(self._shapes_given))})
         assign(self, prescribed=_motions(self.prescribed, dimension, self._shapes_given))
-        self._trace_functions()
-
-    def _trace_functions(self) -> None:
-        n, of = self.dimension, f"{self.dimension} coordinates"
+        n, of = dimension, f"{dimension} coordinates"
         q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
         self._trace("lagrangian", of, (q, q), tracing.checked_value, (), of)
         stack = "Stack one row per constraint; pass None for no constraint."
@@ -249,13 +247,6 @@ def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple
 
 def _argument(argument: str) -> str:
     return f"LagrangeDAlembert({argument}=...)"
-
-
-def _names(value: Any, n: int) -> tuple[str, ...]:
-    """Return the names of the coordinates: by default q1 and so on."""
-    if isinstance(value, tuple) and not value:
-        return tuple(f"q{i}" for i in range(1, n + 1))
-    return names(_argument("coordinates"), value, n)
 
 
 def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> None:

@@ -64,11 +64,6 @@ class Parameters(Mapping[str, Any]):
         """Their shapes."""
         return {key: jax.ShapeDtypeStruct(np.shape(value), float) for key, value in self.items()}
 
-    @property
-    def nothing(self) -> "Parameters":
-        """Zeros of the same names and shapes."""
-        return Parameters({key: np.zeros(np.shape(value)) for key, value in self.items()})
-
     def replace(self, where: str, numbers: Mapping[str, Any]) -> "Parameters":
         """Return them with other numbers of the same names and shapes."""
         for key in numbers.keys() - self.keys():
@@ -265,7 +260,8 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         """The system with zeros as parameters, which stands for all their numbers."""
         if not self.parameters:
             return self
-        family = self._with_fields(parameters=self.parameters.nothing)
+        zeros = Parameters({key: np.zeros(np.shape(value)) for key, value in self.parameters.items()})
+        family = self._with_fields(parameters=zeros)
         vars(family)["family"] = family
         return family
 
@@ -274,28 +270,25 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         """The family without rows of a table, which stands for all `numbers`: what programs are made of."""
         if self.table is None:
             return self.family
-        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": self.table.nothing}))
+        nothing = traced.ForceTable(np.zeros_like(self.table.rows[:1]))
+        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": nothing}))
         vars(form).update(family=form, form=form)
         return form
 
     def bound(self, *numbers: Any) -> Self:
         """Return the system without parameters whose functions have these numbers within, and a table these rows."""
         self._refuse_slips()
-        p = dict(zip(self.parameters, numbers, strict=False))
-        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p, *numbers[len(p) :]))
+        p, parts = dict(zip(self.parameters, numbers, strict=False)), parts_of(self.force)
+        parts |= {"function": traced.Bound(parts["function"], p)} if "function" in parts else {}
+        parts |= {"table": traced.ForceTable(*numbers[len(p) :])} if numbers[len(p) :] else {}
+        motions = tuple((index, traced.Bound(motion, p)) for index, motion in self.prescribed)
+        own = {name: getattr(self, name) for name in self.functions}
+        functions = {name: each and traced.Bound(each, p) for name, each in own.items()}
+        return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
 
     def discrete_map(self: Any, time_step: Any) -> systems.DiscretizationT:
         """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").MAPS[self.orbits](self, time_step)
-
-    def _bound_fields(self: Any, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
-        """Return the fields that are functions, with parameters within, and the force with rows of its table."""
-        own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
-        parts |= {"function": traced.Bound(parts["function"], p)} if "function" in parts else {}
-        parts |= {"table": traced.ForceTable(*rows)} if rows else {}
-        motions = tuple((index, traced.Bound(motion, p)) for index, motion in self.prescribed)
-        functions = {name: each and traced.Bound(each, p) for name, each in own.items()}
-        return functions | {"force": force_of(parts), "prescribed": motions}
 
     @functools.cached_property
     def plain(self) -> Self:

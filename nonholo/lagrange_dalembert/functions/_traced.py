@@ -205,11 +205,6 @@ class ForceTable(Keeper):
         return self.rows[np.clip(steps, -1, len(self.rows) - 1)]
 
     @property
-    def nothing(self) -> Self:
-        """The table of no forces, which stands for all."""
-        return type(self)(np.zeros((1, self.rows.shape[1])))
-
-    @property
     def address(self) -> Float[np.ndarray, "1 n"]:
         """Where formulas find the number of rows and the rows: each number is the place in memory, below 2^53."""
         return np.full((1, self.rows.shape[1]), float(self._memory.ctypes.data))

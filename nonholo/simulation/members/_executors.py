@@ -221,11 +221,10 @@ def _advance_by_jax(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.Mem
 def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members alone, each as it runs by `simulate` or `flow`."""
     count, orbits, good = len(members), {}, np.zeros(len(members), dtype=np.int64)
-    run = _run_alone if plan.times is None else _flow_alone
 
     def work(part: slice, _: np.ndarray) -> None:
         with naming(member := part.start):
-            orbits[member], good[member] = run(members.of(member), starts.of(member), plan)
+            orbits[member], good[member] = _run_alone(members.of(member), starts.of(member), plan)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
     is_soon = stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE)
@@ -244,7 +243,11 @@ def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
 
 
 def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
-    """Return the states that one member keeps as an orbit, and its number of good steps."""
+    """Return the states that one member keeps as an orbit, and its number of good steps, of a flow of later times."""
+    if plan.times is not None:
+        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
+        orbit = flow(first, plan.times, plan.rtol, reconstruct=plan.with_poses)
+        return orbit, len(orbit) - 1
     stepper = _stepper_of(motion, plan)
     watch = None if plan.events is None else Watch(plan.events, motion.after_parts)
     run = Run(stepper, plan.steps, plan.every or plan.steps, watch, throw=False, progress=False)
@@ -252,13 +255,6 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
         return run_to_end(run, first, whole=plan.every is not None)
     except OutcomeError as early:
         return dataclasses.replace(cast(Any, early.orbit), outcome=early.outcome), 0
-
-
-def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
-    """Return the flow of one member up to its end, and the number of good times after the first."""
-    flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
-    orbit = flow(first, cast(np.ndarray, plan.times), plan.rtol, reconstruct=plan.with_poses)
-    return orbit, len(orbit) - 1
 
 
 def run_by_series(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:

@@ -92,11 +92,6 @@ class Members(Keeper):
         return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
     @functools.cached_property
-    def keep_frame(self) -> bool:
-        """Whether all members clearly have the canonical frame of the shared motion, with all parameters."""
-        return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
-
-    @functools.cached_property
     def lanes(self) -> Any:
         """The route of all members in one, in closed form; None where they do not have the same."""
         if self.route is None or not self.route.is_scalar or self.joint_system is None:
@@ -321,9 +316,7 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
     Those that are computed side by side start at once.
     """
     if start.name == "displacement" or not at_once:
-        each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
-        numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-        return First(numbers, None if each[0].demand is None else np.stack([first.demand for first in each]))
+        return _one_by_one(members, start, with_poses=with_poses)
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
         part = slice(begin, begin + _CHUNK)
@@ -332,6 +325,12 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
             _of_one(members, start, begin + int(np.argmax(bad)), with_poses=with_poses)
     full = start.name == "momentum" and start.value.shape[1] != 2
     return First((momenta, _poses(members, start)), start.value if full else None)
+
+
+def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> First:
+    each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
+    numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
+    return First(numbers, None if each[0].demand is None else np.stack([first.demand for first in each]))
 
 
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:

@@ -319,9 +319,9 @@ class Ensemble:
             return False
         is_composition = name == "displacement" and getattr(self.members.route, "order", 2) > 2
         same = set() if name == "momentum" or is_composition else {"time_step"}
-        names = self.members.of_system
-        if names and name in _OF_FRAME and not is_composition and self.members.keep_frame:
-            same |= names
+        joint = self.members.joint_system
+        if name in _OF_FRAME and not is_composition and joint is not None:
+            same |= self.members.of_system if np.all(joint.frame == motion.system.frame) else set()
         return self.members.parameters.keys() <= same
 
 
