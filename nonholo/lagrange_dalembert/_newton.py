@@ -176,16 +176,12 @@ def root(system: Equations, near: Array, guess: Array, sign: Array) -> tuple[Arr
     path_start = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
     path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, path_start)
     finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
-    return path.root.velocity, path.root.multipliers, jnp.where(finite, _outcome(path), int(Outcome.nonfinite))
-
-
-def _outcome(path: _Path) -> Array:
-    """Return what ended a path if it did not arrive."""
     singular = path.root.regularity < SINGULAR
     is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
     code = jnp.where(is_folded, int(Outcome.no_real_branch), code)
-    return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
+    code = jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
+    return path.root.velocity, path.root.multipliers, jnp.where(finite, code, int(Outcome.nonfinite))
 
 
 def _newton(system: Equations, v: Array, multipliers: Array, offset: Array) -> Root:

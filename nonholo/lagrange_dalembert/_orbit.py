@@ -313,8 +313,6 @@ class GroupOrbit(AbstractCoordinateOrbit):
         """The group."""
         return self.system.group
 
-    space = group
-
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
 

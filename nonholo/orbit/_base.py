@@ -229,9 +229,9 @@ class AbstractOrbit(Keeper, abc.ABC):
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
 
-    @abc.abstractmethod
     def of_rows(self: SelfT, rows: dict[str, np.ndarray]) -> SelfT:
         """Return the orbit of other rows."""
+        return dataclasses.replace(cast(Any, self), **rows)
 
     def chosen(self: SelfT, states: slice | np.ndarray) -> SelfT:
         """Return some of the states, by a slice, a mask or their numbers, each with the same `save_every` as before."""

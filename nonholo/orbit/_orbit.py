@@ -214,10 +214,6 @@ class Orbit(AbstractOrbit):
         """Return the arrays with a row for each state."""
         return {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
 
-    def of_rows(self, rows: dict[str, np.ndarray]) -> "Orbit":
-        """Return the orbit of other rows."""
-        return dataclasses.replace(self, **cast(Any, rows))
-
     def with_headings(self, before: float | None) -> "Orbit":
         """Return states of the plane with headings that continue from the given one; others as they are."""
         pose = self.canonical_pose

@@ -222,7 +222,12 @@ def flow_through_impacts(first: Any, time: np.ndarray, flights: Any, events: Eve
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
             outcome, message, span = max(outcome, flown, looks.outcome), fault, 2 * span
-    return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
+    log, until = watch.log(), float(there.time[0])
+    if log.stopped_by is not None:
+        until = float(log[log.stopped_by].time[-1])
+    motion = flights.joined([first.with_headings(None), *watch.impacts], until)  # each from the last impact before it
+    orbit = dataclasses.replace(first, **motion).at(time[time <= until])
+    return dataclasses.replace(orbit, outcome=outcome, events=of_requested(log, time, 1.0, **motion)), message
 
 
 def _pass_impact(flights: Any, watch: Watch, looks: Orbit, least: float) -> tuple[Orbit, Watch, Outcome]:
@@ -256,13 +261,3 @@ def _part(flights: Any, length: float, flows: dict[bytes, Any], states: Orbit, f
     if outcome != Outcome.successful:
         return dataclasses.replace(states, **{momentum: np.full_like(getattr(states, momentum), np.nan)})
     return flow.at(np.minimum(first.time + length * fractions, flow.time[-1]))
-
-
-def _whole(first: Any, time: np.ndarray, flights: Any, watch: Watch, until: float, outcome: Outcome) -> Any:
-    """Return the flow at requested times up to one, each from the last impact before it."""
-    log = watch.log()
-    if log.stopped_by is not None:
-        until = float(log[log.stopped_by].time[-1])
-    motion = flights.joined([first.with_headings(None), *watch.impacts], until)
-    orbit = dataclasses.replace(first, **motion).at(time[time <= until])
-    return dataclasses.replace(orbit, outcome=outcome, events=of_requested(log, time, 1.0, **motion))

@@ -49,7 +49,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
 
 
 def continue_run(run: Run, stream: "Stream") -> Any:
-    """Compute what a locked store lacks, block after block, and return the orbit."""
+    """Compute what a locked store lacks, block after block; return the orbit, or its last block if it fills memory."""
     stream.prepare()
     others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
     if others and not stream.is_finished:
@@ -59,7 +59,10 @@ def continue_run(run: Run, stream: "Stream") -> Any:
         stream.path, "The run", lambda: f"step {stream.steps_done()} of {stream.plan.steps}"
     ):
         end = _complete(run, stream)
-    return run.finish(_load(run, stream, end), end.done)
+    states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
+    if states * (2 + run.stepper.width) <= _LOADED:
+        return run.finish(io.load_orbit(stream.path, discrete=run.stepper.motion), end.done)
+    return run.finish(io.orbits.load_states(stream.path, run.stepper.motion, last=True), end.done)
 
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:
@@ -106,14 +109,6 @@ def _first(stream: "Stream") -> Checkpoint:
     except io.blocks.DamagedError as flaw:
         remedy = "It is lost: run it again."
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
-
-
-def _load(run: Run, stream: "Stream", end: Checkpoint) -> Any:
-    """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
-    if states * (2 + run.stepper.width) <= _LOADED:
-        return io.load_orbit(stream.path, discrete=run.stepper.motion)
-    return io.orbits.load_states(stream.path, run.stepper.motion, last=True)
 
 
 def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
