@@ -184,7 +184,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         s - m; on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by
         its equation of variation.
         """
-        return room("_tangents").tangent_map(self)
+        maps, rows, units, _ = room("_tangents").changes(self)
+        return room("_tangents").among_admissible(maps, rows, np.ones_like(units))
 
     def at(self, times: Any) -> "AbstractCoordinateOrbit":
         """Return the states of a flow at any of its times, from its Taylor series, without a new run.

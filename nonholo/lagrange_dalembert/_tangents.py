@@ -74,12 +74,6 @@ def slopes(
     return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
-def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
-    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
-    maps, rows, units, _ = changes(orbit)
-    return among_admissible(maps, rows, np.ones_like(units))
-
-
 def among_admissible(
     maps: Float[np.ndarray, "L d d"], rows: Float[np.ndarray, "K c d"], units: Float[np.ndarray, "d"]
 ) -> Float[np.ndarray, "L f f"]:
@@ -103,11 +97,10 @@ def changes(orbit: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         raise error(where, "have a state", "none", "Run longer.")
     x, v = places(system, orbit.configuration, time), orbit.body_velocity
     _, slope, rows = slopes(motion, x, v)
-    maps = (
-        slope[:-1] + np.eye(slope.shape[-1])
-        if orbit.is_discrete
-        else room("_integration").transitions(system, x, v, time)
-    )
+    if orbit.is_discrete:
+        maps = slope[:-1] + np.eye(slope.shape[-1])
+    else:
+        maps = room("_integration").transitions(system, x, v, time)
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time, and places that it prescribes
     matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
     maps, rows = maps[:, matters][:, :, matters], rows[..., matters]
@@ -160,10 +153,8 @@ def _slopes_of(system: Any, h: Array | None, change: Callable[[Array, Array], Ar
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
         xi, w = z[:size], z[size:]
         value, place = change(xi, w), system.places.beside(x, xi)
-        return (
-            value,
-            jnp.concatenate([equations.constraint_of(system, h, place, w), equations.holonomic(system, place)]),
-        ), value
+        limits = jnp.concatenate([equations.constraint_of(system, h, place, w), equations.holonomic(system, place)])
+        return (value, limits), value
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
     return value, slope, rows

@@ -152,8 +152,7 @@ Decoder: TypeAlias = BodyDecoder | ClosedDecoder
 def decoder_of(system: System) -> Decoder:
     """Return the decoder of a system: the compiled one if it has two admissible directions on SO(3) or SE(2)."""
     group = system.group
-    is_closed = group.curvature is not None and not system.is_spatial and system.rank == 2
-    if not is_closed or system.canonical.inertia_factors is None:
+    if group.curvature is None or system.is_spatial or system.rank != 2 or system.canonical.inertia_factors is None:
         return BodyDecoder(system)
     (T, d), frame, S = system.canonical.inertia_factors, system.frame, system.constraint_subspace
     own, arms, (across,) = is_own_frame(system), system.canonical.constraint_subspace.T, system.annihilator

@@ -146,13 +146,13 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     code, place, n = programs(system.form, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
-    *functions, border = code
+    arrive, settle, correct, border = code
     size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.numbers_of_formulas)]
     departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
     inputs, equations = np.zeros(border + size), np.zeros(size * size + 2 * size + 2)
     rows = equations[:-2].reshape(size + 2, size)
     parts = inputs[border:], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
-    return CoordinateBody(*functions, departure, arrival, inputs, *parts, place, n)
+    return CoordinateBody(arrive, settle, correct, departure, arrival, inputs, *parts, place, n)
 
 
 def set_out(system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:

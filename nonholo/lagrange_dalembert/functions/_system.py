@@ -275,7 +275,7 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         vars(form).update(family=form, form=form)
         return form
 
-    def bound(self, *numbers: Any) -> Self:
+    def bound(self: Any, *numbers: Any) -> Any:
         """Return the system without parameters whose functions have these numbers within, and a table these rows."""
         self._refuse_slips()
         p, parts = dict(zip(self.parameters, numbers, strict=False)), parts_of(self.force)

@@ -148,7 +148,7 @@ def run_in_lanes(members: Members, starts: First, plan: Plan, threads: int, repo
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
     columns |= {"canonical_pose": rows.poses} if plan.with_poses else {}
-    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.numbers[:2])
+    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], momenta, first)
     if starts.demand is not None:
         free, probe = starts._replace(demand=None), plan._replace(steps=1, every=1, with_poses=True)
         _refuse_other_starts(batch, starts.demand, run_in_lanes(members, free, probe, threads, lambda _: None))
@@ -230,11 +230,11 @@ def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, re
     is_soon = stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE)
     threads = 0 if is_soon or members.in_coordinates else threads
     in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
-    each = [orbits[member] for member in range(count)]
+    each, (momenta, places, *_) = [orbits[member] for member in range(count)], starts.numbers
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stack_rows(each, plan.states) | _times(plan, count)
     branch = getattr(stepper, "branch", PRINCIPAL.name)
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.numbers[:2], branch=branch)
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, momenta, places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
@@ -259,14 +259,14 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
 
 def run_by_series(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Solve for the flows of members side by side."""
-    count, pieces, time, first = len(members), {}, cast(np.ndarray, plan.times), starts.numbers[:2]
+    count, pieces, time, (momenta, poses) = len(members), {}, cast(np.ndarray, plan.times), starts.numbers
 
     def work(part: slice, stop: np.ndarray) -> None:
         options = time - time[0], plan.rtol, stop
-        inertias, places = inertias_of(members.part(part)), starts.of(part).numbers[:2]
-        pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
+        inertias, system = inertias_of(members.part(part)), members.discrete.system
+        pieces[part.start] = members_by_series(system, inertias, momenta[part], poses[part], *options)
 
-    numbers = sum(x.shape[1] for x in first) * len(time)
+    numbers = (momenta.shape[1] + poses.shape[1]) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     group, free = members.discrete.system.group, members.discrete.system.forces is None
     is_short = free and count <= _FLOWS and count * numbers <= _SOON
@@ -286,7 +286,7 @@ def run_by_series(members: Members, starts: First, plan: Plan, threads: int, rep
         codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
         for column in columns.values():
             column[np.arange(len(time)) >= good[:, None]] = np.nan
-    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *first)
+    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, momenta, poses)
 
 
 def _motion_bound(members: Members, starts: First, time: np.ndarray) -> float:

@@ -262,7 +262,7 @@ def check_systems(members: Members) -> None:
         raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
     joint = members.joint_system
     is_clear = not members.of_system or (joint is not None and joint.is_clear)  # that all of them, or each, can be made
-    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))):
+    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))).tolist():
         with naming(member):
             members.of(member)
 
@@ -330,7 +330,8 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
 def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> First:
     each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    return First(numbers, None if each[0].demand is None else np.stack([first.demand for first in each]))
+    demands = [first.demand for first in each if first.demand is not None]
+    return First(numbers, np.stack(demands) if demands else None)
 
 
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:
