@@ -178,19 +178,10 @@ def _blocks(system: Any, x: np.ndarray, masses: Float[np.ndarray, "n"], still: i
 
 def _equations(code: Formulation, blocks: tuple[int, ...]) -> Quadratic:
     """Return equations without quadratic terms, whose numbers are the room of the code."""
-    return _structure(blocks)._replace(factors=np.zeros((1, code.room)))
-
-
-@functools.lru_cache(maxsize=64)
-def _structure(blocks: tuple[int, ...]) -> Quadratic:
-    """Return what equations with these blocks have in common."""
-    size = len(blocks)
-    none = np.zeros(0, dtype=np.int64)
-    sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, 0))
-    ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(
-        np.zeros((0, 0)), *sparse, np.arange(size), np.array(blocks), np.zeros(1 + max(blocks), dtype=np.bool_), *ends
-    )
+    size, none = len(blocks), np.zeros((2, 0), dtype=np.int64)
+    sparse = none, np.zeros(size + 1, dtype=np.int64), none[0], np.zeros((1, code.room))
+    measures = np.arange(size), np.array(blocks), np.zeros(1 + max(blocks), dtype=np.bool_)
+    return Quadratic(np.zeros((0, 0)), *sparse, *measures, np.zeros(0), np.zeros((0, 0)), np.zeros(0))
 
 
 def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
