@@ -228,11 +228,8 @@ def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None
 
 def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
-    blocks, end = [], 0
-    for shape in shapes:
-        begin, end = end, end + math.prod(shape)
-        blocks.append(table[:, begin:end].reshape(len(table), *shape))
-    return blocks
+    parts = np.split(table, np.cumsum(list(map(math.prod, shapes)))[:-1], axis=1)
+    return [part.reshape(len(table), *shape) for part, shape in zip(parts, shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

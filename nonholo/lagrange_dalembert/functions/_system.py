@@ -36,10 +36,8 @@ class Parameters(Mapping[str, Any]):
         instance(where, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
         names = [checked_name(where, key, ("time_step",)) for key in numbers]
         self._numbers = {key: _valid_number(where, key, numbers[key]) for key in names}
-        self._key = tuple(
-            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
-            for key, value in self.items()
-        )
+        keys = ((key, np.shape(x), id(x) if is_traced(x) else np.asarray(x).tobytes()) for key, x in self.items())
+        self._key = tuple(keys)
 
     def __getitem__(self, name: str) -> Any:
         return self._numbers[name]
@@ -319,10 +317,7 @@ SYSTEM = "a system in coordinates"
 
 @functools.cache
 def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
-    def call(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
-        return function(family.bound(*numbers), *arguments)
-
-    return jax.jit(call, static_argnums=0)
+    return jax.jit(lambda family, numbers, *arguments: function(family.bound(*numbers), *arguments), static_argnums=0)
 
 
 @functools.cache
