@@ -4,6 +4,7 @@ The equations of a system become C functions, made of the definitions of this ro
 """
 
 import functools
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -228,8 +229,8 @@ def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None
 
 def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
-    parts = np.split(table, np.cumsum(list(map(math.prod, shapes)))[:-1], axis=1)
-    return [part.reshape(len(table), *shape) for part, shape in zip(parts, shapes, strict=True)]
+    spans = itertools.pairwise(itertools.accumulate(map(math.prod, shapes), initial=0))
+    return [table[:, begin:end].reshape(len(table), *shape) for (begin, end), shape in zip(spans, shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:
