@@ -94,7 +94,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         run = functools.partial(in_double, _after_parts, system, h)
         ends, ahead = call_in_blocks(run, FEW, number, fractions, x, v, states.momentum)
         none = np.empty((0, system.constraints))
-        orbit = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
+        orbit = CoordinateStepper(self).orbit((ends, ahead, none), 0, 1, Outcome.successful)
         step = states.step + fractions.astype(np.int64)
         return dataclasses.replace(orbit, time=states.time + fractions * h, step=step, events=states.events)
 
@@ -195,9 +195,8 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     @property
     def part_refused(self) -> str | None:
         """Why a step has no parts; None if it has."""
-        if self.motion.system.has_parts:
-            return None
-        return "a table of forces, or discrete functions without a time step"
+        why = "a table of forces, or discrete functions without a time step"
+        return None if self.motion.system.has_parts else why
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the root next to a velocity."""
@@ -220,15 +219,9 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         return count, int(code)
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> orbits.AbstractCoordinateOrbit:
-        """Return rows as an orbit."""
-        q, v, impulses = rows
-        return self.states(self._places(q), v, impulses, step, every, outcome)
-
-    def states(
-        self, q: np.ndarray, v: np.ndarray, impulses: np.ndarray, step: int, every: int, outcome: Outcome
-    ) -> Any:
-        """Return states that were reached, with all that they tell, as an orbit."""
+        """Return rows as an orbit, with all that they tell."""
         system, h = self.motion.system, np.float64(self.motion.time_step)
+        q, (_, v, impulses) = self._places(rows[0]), rows
         columns = compiled.decoded(_decode, system, h, q, v)
         columns = columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
         displacement, momentum, energy, residual = columns

@@ -102,19 +102,17 @@ class Impact:
     def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
         place, dim = states.configuration[0], states.body_velocity.shape[1]
-        if self.point is not None and states.group is None:
-            return self.normal
         if self.point is not None:
-            return Gravity(self.normal, self.point).covector(states.group, place)
+            group = states.group
+            return self.normal if group is None else Gravity(self.normal, self.point).covector(group, place)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
         return _slope_of(gap, states)
 
     def lowest_bounce(self, gap: Any, states: AbstractOrbit) -> float:
         """Return the height in a gap, as its rounding lets it be seen, from which on a bounce is one."""
-        if states.system.is_wide:
-            return 0.0
-        return _LOW * float(np.abs(self.covector(gap, states)) @ _reach(states))
+        is_wide = states.system.is_wide
+        return 0.0 if is_wide else _LOW * float(np.abs(self.covector(gap, states)) @ _reach(states))
 
     def struck(self, where: str, gap: Any, states: AbstractOrbit, direction: int) -> Any:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.
