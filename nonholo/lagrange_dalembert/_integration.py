@@ -17,15 +17,6 @@ from nonholo.lagrange_dalembert.functions import in_double, in_rows
 _RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
 
 
-def flow(
-    system: Any, first: State, times: np.ndarray, errors: tuple[float, float]
-) -> tuple[list[np.ndarray], "Pieces"]:
-    """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
-    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
-    rows = good_rows(first, rest, good, len(times))
-    return rows, Pieces(system, times[: len(rows[0])], rows, errors)
-
-
 class Pieces(NamedTuple):
     """A solved motion: its states, from each of which it can be solved for a piece of time.
 
@@ -61,6 +52,13 @@ class Pieces(NamedTuple):
     def looks(self) -> np.ndarray:
         """Return no times: events are evaluated at those of the states alone."""
         return self.times
+
+
+def flow(system: Any, first: State, times: np.ndarray, errors: tuple[float, float]) -> tuple[list[np.ndarray], Pieces]:
+    """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
+    rows = good_rows(first, rest, good, len(times))
+    return rows, Pieces(system, times[: len(rows[0])], rows, errors)
 
 
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:

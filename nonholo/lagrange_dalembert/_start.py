@@ -32,9 +32,7 @@ def _argument(system: Any, name: str) -> str:
     return f"{type(system).__name__}({name}=...)"
 
 
-def point(
-    owner: str, system: Any, configuration: Any, time: float = 0.0, *, project: bool = False
-) -> Float[np.ndarray, "x"]:
+def point(owner: str, system: Any, configuration: Any, time: float = 0.0, *, project: bool = False) -> np.ndarray:
     """Return the place of an admissible configuration at which the constraint forms are finite and independent.
 
     With `project` it is the admissible one next to the configuration in the kinetic energy.

@@ -29,9 +29,7 @@ _NO_TIME = 8  # units in the last place of a time
 _AHEAD = 2.0 ** np.arange(-10, 1)  # of a step, where the rate of a gap says whether the body is pressed
 
 
-def after_contact(
-    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, node: Orbit
-) -> tuple[Any, Watch, Outcome]:
+def after_contact(begin: Callable[[Any], tuple[Any, Outcome]], watch: Watch, node: Orbit) -> tuple[Any, Watch, Outcome]:
     """Take a step from a node at a wall, or what is left of it after the impact that was seen last.
 
     Args:
