@@ -167,10 +167,8 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
     places, (first,), (end,) = find_crossings(watch.events, stretch, values, owner, left, watch.part)
     count = len(stretch) if first < 0 else 1 + int(end - stretch.step[0])
-    crossings = tuple(
-        _crossings_of(watch, first, position, stretch, row, at)
-        for position, (row, at) in enumerate(zip(values, places, strict=True))
-    )
+    each = enumerate(zip(values, places, strict=True))
+    crossings = tuple(_crossings_of(watch, first, position, stretch, row, at) for position, (row, at) in each)
     last = values[:, count - 1 : count] if count else None
     heading = None if stretch.turned is None else float(stretch.turned[count - 1])
     new_watch = dataclasses.replace(watch.after_stretch(crossings), values=last, heading=heading)
@@ -241,10 +239,8 @@ def _cut_ends(
         np.minimum.at(limit, owner[at], at)
     early = [at[at <= limit[owner[at]]] for at in each_at]
     within = [at[at == limit[owner[at]]] for at in early]
-    crossings = [
-        locate(name, event, states, row, at, part)
-        for (name, event), row, at in zip(events.items(), values, within, strict=True)
-    ]
+    each = zip(events.items(), values, within, strict=True)
+    crossings = [locate(name, event, states, row, at, part) for (name, event), row, at in each]
     moments = [each.step - states.step[at] + each.fraction for each, at in zip(crossings, within, strict=True)]
     for event, (at, past) in enumerate(zip(within, moments, strict=True)):
         ends = np.isin(at, ending[event]) & (past < moment[owner[at]])

@@ -65,9 +65,8 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
     def write(module: ir.Module) -> int:
         whole = program(at, place, (n,), *map(np.shape, family.parameters.values()), ())
         f, parts = whole.formulas, iter(whole.results)
-        mass, A, force, off, rate, momentum, energy, residual, away, leaving = (
-            array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
-        )
+        arrays = (array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes)
+        mass, A, force, off, rate, momentum, energy, residual, away, leaving = arrays
         matrix = bordered_elimination(f, mass, A)
         zero, acceleration = f.constant(0.0), matrix.solution([*force, *off])
         across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (residual, away, leaving))

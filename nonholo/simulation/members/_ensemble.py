@@ -175,8 +175,7 @@ def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Option
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     stepper = stepper_of(discrete, branch, backend, with_poses=bool(reconstruct), owner="ensemble")
     check_forces("ensemble", discrete, steps)
-    watch = None if events is None else watch_for("ensemble", stepper, events)
-    by_name = None if watch is None else watch.events
+    by_name = None if events is None else watch_for("ensemble", stepper, events).events
     refuse_resets("ensemble", by_name or {}, "impacts of many members, whose steps are taken side by side")
     plan = Plan(steps, save_every, bool(reconstruct), branch, backend, by_name)
     return discrete, plan, tuple(stepper.columns.values())
@@ -200,8 +199,7 @@ def _check_momenta(members: Members, starts: First, plan: Plan) -> None:
     if wrong.any():
         member = int(np.argmax(wrong))
         remedy = f"With the same components along the constraint that of member {member} is {full[member].tolist()}."
-        got = f"{momenta[member].tolist()}"
-        raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
+        raise error("ensemble(momentum=...)", "belong to admissible velocities", f"{momenta[member].tolist()}", remedy)
 
 
 def _run_all(members: Members, starts: First, plan: Plan, width: int, reduce: Any, report: Report) -> Any:
