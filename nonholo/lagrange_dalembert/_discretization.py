@@ -182,9 +182,6 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     lead: ClassVar[int] = 0
     block = 1 << 18
 
-    def __post_init__(self) -> None:
-        _ = self.motion.system.places  # refused by the system of a store without functions
-
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""

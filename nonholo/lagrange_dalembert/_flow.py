@@ -110,9 +110,7 @@ def flow(system: Any, *, rtol: float | None, atol: float, **start: Any) -> Any:
     return conclude_flow(solve(system, first, time, rtol, atol), time, _checked_errors(rtol, atol))
 
 
-def _opening(
-    system: Any, *, configuration: Any, times: Any, project: bool, **starts: Any
-) -> tuple[Float[np.ndarray, "K"], State]:
+def _opening(system: Any, *, configuration: Any, times: Any, project: bool, **starts: Any) -> tuple[np.ndarray, State]:
     """Return the checked times of a flow and its first place and velocity."""
     refuse_table("flow(system=...)", system.table)
     time = flow_times(times)
@@ -175,9 +173,7 @@ class Broken(NamedTuple):
         return float(self.nodes[0]), float(self.nodes[-1])
 
 
-def flights(
-    system: Any, *, rtol: float | None, atol: float, **start: Any
-) -> tuple[Flights, Float[np.ndarray, "K"], Any]:
+def flights(system: Any, *, rtol: float | None, atol: float, **start: Any) -> tuple[Flights, np.ndarray, Any]:
     """Check the arguments; return the flows of a system, the times and the first state."""
     (time, (x, v)), _ = _opening(system, **start), _checked_errors(rtol, atol)
     first = _orbit(system, time[:1], [x[None], v[None]], Outcome.successful, None)

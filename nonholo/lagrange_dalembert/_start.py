@@ -118,9 +118,7 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
         raise error(where, "have derivatives along the displacement that span the constraint forms", got, remedy)
 
 
-def velocity(
-    owner: str, system: Any, q: Float[np.ndarray, "x"], value: Any, *, project: bool
-) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
+def velocity(owner: str, system: Any, q: np.ndarray, value: Any, *, project: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the momentum of a velocity that satisfies the constraint, at which the Lagrangian is regular, and this.
 
     With `project` it is the admissible one closest to the value in the kinetic energy.
