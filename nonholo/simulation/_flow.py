@@ -1,7 +1,7 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import importlib
-from typing import Any, NamedTuple, TypeAlias, overload
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 
@@ -18,8 +18,6 @@ from nonholo.simulation._search import Events, values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
-FirstState: TypeAlias = tuple[np.ndarray, np.ndarray | None]
-"""The momentum at the first time and the pose, where one is solved for."""
 
 
 @overload
@@ -178,13 +176,13 @@ class _Task(NamedTuple):
     tolerances: tuple[float, float]
     reconstruct: bool
 
-    def opening(self, first: FirstState) -> Orbit:
+    def opening(self, first: tuple[Any, Any]) -> Orbit:
         """Return the first state alone."""
         reduced, pose = first[0][None], None if first[1] is None else first[1][None]
         return Orbit(ContinuousFlow(self.system), self.time[:1], reduced, None, pose)
 
 
-def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
+def _first_state(task: _Task, start: Start, with_poses: bool) -> tuple[np.ndarray, np.ndarray | None]:
     """Return the momentum at the first time, which belongs to an admissible velocity, and the pose if it is needed."""
     if (numbers := len(task.time) * (task.system.rank + with_poses * task.system.group.pose_size)) > FEW:
         remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
@@ -206,7 +204,7 @@ def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, re
     return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)[0]
 
 
-def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: Events | None) -> tuple[Orbit, str]:
+def _solve_flow(task: _Task, solver: Solver, first: tuple[Any, Any], events: Events | None) -> tuple[Orbit, str]:
     """Return the orbit from a first state, with what events found, and what a function said that ended it."""
     time, reconstruct = task.time, task.reconstruct
     if events is not None:

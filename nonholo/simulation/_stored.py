@@ -286,24 +286,21 @@ def extend(
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
     with io.places.write_lock(stream.path):
-        _refuse_ended(io.metadata.read_attributes(stream.path))
+        attributes = io.metadata.read_attributes(stream.path)
+        outcome, event = attributes.get("outcome", Outcome.successful.name), attributes.get("stopped_by")
+        if event is not None:
+            got = f"one that the event {event!r} ended"
+            remedy = "Run it again without `stop`, or with a later one, to go past it."
+            raise error("extend(store=...)", "be a run that can continue", got, remedy)
+        if outcome != Outcome.successful.name:
+            remedy = f"{Outcome[outcome].message} More steps from there do not exist."
+            raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
         size = 8.0 * (steps // run.every) * (1 + run.stepper.width)
         within_disk("extend(steps=...)", size, stream.path, "Pass fewer steps.")
         longer = io.orbits.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
         return continue_run(run._replace(steps=longer.plan.steps), longer)
-
-
-def _refuse_ended(attributes: dict[str, Any]) -> None:
-    """Refuse a run that came to its end before its last step."""
-    outcome, event = attributes.get("outcome", Outcome.successful.name), attributes.get("stopped_by")
-    if event is not None:
-        remedy = "Run it again without `stop`, or with a later one, to go past it."
-        raise error("extend(store=...)", "be a run that can continue", f"one that the event {event!r} ended", remedy)
-    if outcome != Outcome.successful.name:
-        remedy = f"{Outcome[outcome].message} More steps from there do not exist."
-        raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
 def _open(owner: str, store: Any, discrete: Any, events: Any, *, throw: bool, progress: bool) -> tuple["Stream", Run]:

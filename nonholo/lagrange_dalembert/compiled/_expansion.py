@@ -18,16 +18,8 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
-from nonholo.lagrange_dalembert.compiled._scalars import (
-    DOUBLE,
-    OPERATIONS,
-    Formulas,
-    Scalar,
-    Text,
-    UntranslatableError,
-    operations_between,
-    reference,
-)
+from nonholo.lagrange_dalembert.compiled import _scalars as scalars
+from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, Formulas, Scalar
 
 LINEAR = {"add", "sub", "neg"}
 BILINEAR = {"mul", "div"}
@@ -82,7 +74,7 @@ def rates_of(f: Formulas, y: Scalar) -> list[tuple[Scalar, Scalar]]:
         square = f("add", f("mul", above, above), f("mul", right, right))
         rates = [(above, f("div", right, square)), (right, f("neg", f("div", above, square)))]
     else:
-        raise UntranslatableError(y.operation)
+        raise scalars.UntranslatableError(y.operation)
     return [(x, slope) for x, slope in rates if x.value is None]
 
 
@@ -104,7 +96,7 @@ class Elimination:
                 if i < j:
                     lower.append(self._quotient(products[i], self.pivots[i]))
             if products[j].value == 0:
-                raise UntranslatableError("a pivot is zero")
+                raise scalars.UntranslatableError("a pivot is zero")
             self.lower.append(lower)
             self.pivots.append(products[j])
 
@@ -168,7 +160,7 @@ class Expansion:
 
     def _order_of(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
         """Return the operations that results need, and note the rates of functions among them."""
-        order = operations_between(results, self.inputs)
+        order = scalars.operations_between(results, self.inputs)
         new = [x for x in order if x.operation not in LINEAR | BILINEAR and x not in self.functions]
         if not new:
             return order
@@ -279,8 +271,8 @@ class Expansion:
     def _write_value(self, x: Scalar, target: Any, *rest: Any) -> None:
         """Write the coefficient of order 0: the value."""
         values = [y if y.type == DOUBLE else self._of(y, self.first) for y in rest[: len(x.arguments)]]
-        text = OPERATIONS[x.operation].emit(self.builder.module, *map(reference, values))
-        self.builder.store(Text(self.builder, DOUBLE, text), self.builder.gep(self.first, [target]))
+        text = scalars.OPERATIONS[x.operation].emit(self.builder.module, *map(scalars.reference, values))
+        self.builder.store(scalars.Text(self.builder, DOUBLE, text), self.builder.gep(self.first, [target]))
 
     def _write_states(self) -> None:
         """Write the coefficients of order k of the state."""
