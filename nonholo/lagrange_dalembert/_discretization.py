@@ -74,8 +74,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
-        p, v = checks.velocity(*subject, q, start.value, project=start.project)
-        return First((p, q, v))
+        return First(checks.velocity(*subject, q, start.value, project=start.project))
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
@@ -162,7 +161,7 @@ def checked_state(
     q = checks.point(owner, system, configuration, time, project=project)
     if name == "momentum":
         return checks.of_momentum(owner, system, q, starts[name])[1:]
-    return q, checks.velocity(owner, system, q, starts[name], project=project)[1]
+    return checks.velocity(owner, system, q, starts[name], project=project)[1:]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -274,9 +273,7 @@ def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Ar
     return system.places.displacement(v, h), momentum, energy, residual
 
 
-def _after_parts(
-    system: Any, h: Array, number: Array, fractions: Array, x: Array, v: Array, p: Array
-) -> tuple[Array, Array]:
+def _after_parts(system: Any, h: Array, number: Array, fractions: Array, x: Array, v: Array, p: Array) -> tuple:
     """Return the places after parts of steps, and the velocities of the whole steps that begin there.
 
     One after another: the bits of each do not depend on the others. Rows with the number of the last one are left out.

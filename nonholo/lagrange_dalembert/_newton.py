@@ -57,9 +57,7 @@ def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array
     return jnp.sign(jnp.linalg.det(matrix)), jnp.linalg.svd(matrix, compute_uv=False)[-1]
 
 
-def solve(
-    system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
-) -> tuple[Array, Array, Array]:
+def solve(system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, ...]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`.
 
     Where forces balance at rest velocities are rounding errors, and so are corrections: they are compared with what the
@@ -119,9 +117,7 @@ def of_step(system: Any, q: Array, p: Array, near: Array, h: Array) -> Equations
     return Equations(lambda v: newton_matrix(system, q, v, h, kinetic), equations.forms(system, q), p, rounding)
 
 
-def newton_matrix(
-    system: Any, q: Array, v: Array, h: Array, kinetic: Array
-) -> tuple[Array, Scaled, tuple[Array, Array]]:
+def newton_matrix(system: Any, q: Array, v: Array, h: Array, kinetic: Array) -> tuple[Array, Scaled, tuple[Array, ...]]:
     """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
 
     def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

@@ -51,13 +51,7 @@ class _Node(NamedTuple):
 
 
 def roll(
-    sizes: tuple[int, int],
-    controls: Any,
-    start: tuple[str, Array, Array],
-    family: Any,
-    numbers: tuple[Array, ...],
-    h: Array,
-    work: Array | None = None,
+    sizes: tuple[int, int], controls: Any, start: tuple[Any, ...], family: Any, numbers: Any, h: Any, work: Any = None
 ) -> CoordinateRollout:
     """Return the orbit from a start, which has a name, coordinates and a value, with the outcome up to each state.
 
@@ -108,9 +102,7 @@ def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tu
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0,))
-def step_root(
-    family: Any, arguments: tuple[tuple[Array, ...], Array, Array, Array], search: tuple[Array, Array, Array]
-) -> tuple[Array, Array]:
+def step_root(family: Any, arguments: tuple[Any, ...], search: tuple[Array, ...]) -> tuple[Array, Array]:
     """Return velocity with multipliers of the step from a place with a momentum, and the outcome.
 
     The search begins near a velocity, with a guess, and keeps an orientation; derivatives do not see it.

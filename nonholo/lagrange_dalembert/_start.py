@@ -118,8 +118,8 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
         raise error(where, "have derivatives along the displacement that span the constraint forms", got, remedy)
 
 
-def velocity(owner: str, system: Any, q: np.ndarray, value: Any, *, project: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the momentum of a velocity that satisfies the constraint, at which the Lagrangian is regular, and this.
+def velocity(owner: str, system: Any, q: np.ndarray, value: Any, *, project: bool) -> tuple[np.ndarray, ...]:
+    """Return the momentum, the place and the velocity, which satisfies the constraint of a Lagrangian regular there.
 
     With `project` it is the admissible one closest to the value in the kinetic energy.
     """
@@ -128,13 +128,13 @@ def velocity(owner: str, system: Any, q: np.ndarray, value: Any, *, project: boo
     p, units, A, residual = _check_regular(system, q, v)
     if project:
         v = in_double(admissible_velocity, system, q, v)
-        return momentum(system, q, v), v
+        return momentum(system, q, v), q, v
     if not np.count_nonzero(residual):
-        return p, v
+        return p, q, v
     rounding = np.finfo(float).eps * np.linalg.norm(A * units, axis=1) * np.linalg.norm(v / units)  # of small terms
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
-    return p, v
+    return p, q, v
 
 
 def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -99,7 +99,8 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
-    run = checked_run("simulate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
+    how = {"reconstruct": reconstruct, "throw": throw, "progress": progress}
+    run = checked_run("simulate", discrete, steps, save_every, branch, backend, events, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
@@ -172,7 +173,8 @@ def iterate(
         >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
         [400, 400, 201]
     """
-    run = checked_run("iterate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
+    how = {"reconstruct": reconstruct, "throw": throw, "progress": progress}
+    run = checked_run("iterate", discrete, steps, save_every, branch, backend, events, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)
