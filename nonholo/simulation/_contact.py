@@ -155,7 +155,7 @@ def _search_rest(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, s
 
 
 class BodyFlights(NamedTuple):
-    """The flows from states of a body, by a method and to tolerances; the room of coordinates has the same of its."""
+    """The flows from states of a body, by a method and to tolerances; `lagrange_dalembert` has those in coordinates."""
 
     system: Any
     method: str | None
