@@ -139,7 +139,7 @@ class OutcomeError(RuntimeError):
 def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -> Any:
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome:
-        where = f"Step {good + 1} of {steps}" if len(orbit) else "Start of the run"
+        where = f"Step {good + 1} of {steps}" if good or len(orbit) else "Start of the run"
         route = getattr(orbit.motion, "route", None) if orbit.outcome == Outcome.nonfinite else None
         faults = " ".join(getattr(route, "faults", {}).values())
         raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, faults)
@@ -150,6 +150,7 @@ def conclude_flow(orbit: Any, time: Any, errors: tuple[float, float], acting: st
     """Return a flow, or raise if it ended before the last of its times; `acting` names the force on it."""
     if orbit.outcome != Outcome.successful:
         (rtol, atol), count = errors, len(orbit)
-        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        ahead = time[min(count, len(time) - 1)]  # the last state itself may be one that is not finite
+        where = f"Flow from time {time[count - 1]:g} to {ahead:g}{acting} (rtol {rtol:g}, atol {atol:g})"
         raise OutcomeError(orbit.outcome, where, orbit, reason)
     return orbit

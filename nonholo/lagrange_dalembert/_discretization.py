@@ -29,9 +29,6 @@ from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
 
-Motion = tuple[Array, Array, Array]
-"""Place, velocity of its step, velocity of the step before."""
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
@@ -77,8 +74,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
-        p, v = checks.velocity(*subject, q, start.value, project=start.project)
-        return First((p, q, v))
+        return First(checks.velocity(*subject, q, start.value, project=start.project))
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
@@ -97,7 +93,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         run = functools.partial(in_double, _after_parts, system, h)
         ends, ahead = call_in_blocks(run, FEW, number, fractions, x, v, states.momentum)
         none = np.empty((0, system.constraints))
-        orbit = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
+        orbit = CoordinateStepper(self).orbit((ends, ahead, none), 0, 1, Outcome.successful)
         step = states.step + fractions.astype(np.int64)
         return dataclasses.replace(orbit, time=states.time + fractions * h, step=step, events=states.events)
 
@@ -165,7 +161,7 @@ def checked_state(
     q = checks.point(owner, system, configuration, time, project=project)
     if name == "momentum":
         return checks.of_momentum(owner, system, q, starts[name])[1:]
-    return q, checks.velocity(owner, system, q, starts[name], project=project)[1]
+    return checks.velocity(owner, system, q, starts[name], project=project)[1:]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -185,9 +181,6 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     lead: ClassVar[int] = 0
     block = 1 << 18
 
-    def __post_init__(self) -> None:
-        _ = self.motion.system.places  # refused by the system of a store without functions
-
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
@@ -198,9 +191,8 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     @property
     def part_refused(self) -> str | None:
         """Why a step has no parts; None if it has."""
-        if self.motion.system.has_parts:
-            return None
-        return "a table of forces, or discrete functions without a time step"
+        why = "a table of forces, or discrete functions without a time step"
+        return None if self.motion.system.has_parts else why
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the root next to a velocity."""
@@ -213,7 +205,9 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         system, h = self.motion.system, np.float64(self.motion.time_step)
         by_jax, sign = functools.partial(in_double, _advance, system, h), state[-1]
         table = tuple(column[: steps // every] for column in rows)
-        count, motion, code = compiled.advance(by_jax, system, h, self._motion(state), sign, every, table)
+        place, rate, _ = self.columns.values()
+        motion = self._places(state[:place])[0], state[place : place + rate], state[-1 - rate : -1]
+        count, motion, code = compiled.advance(by_jax, system, h, motion, sign, every, table)
         for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
             if count % every == 0:
                 column[count // every] = np.ravel(entries)
@@ -221,16 +215,12 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         return count, int(code)
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> orbits.AbstractCoordinateOrbit:
-        """Return rows as an orbit."""
-        q, v, impulses = rows
-        return self.states(self._places(q), v, impulses, step, every, outcome)
-
-    def states(
-        self, q: np.ndarray, v: np.ndarray, impulses: np.ndarray, step: int, every: int, outcome: Outcome
-    ) -> Any:
-        """Return states that were reached, with all that they tell, as an orbit."""
+        """Return rows as an orbit, with all that they tell."""
         system, h = self.motion.system, np.float64(self.motion.time_step)
-        displacement, momentum, energy, residual = _decoded(system, h, q, v)
+        q, (_, v, impulses) = self._places(rows[0]), rows
+        columns = compiled.decoded(_decode, system, h, q, v)
+        columns = columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
+        displacement, momentum, energy, residual = columns
         number = step + every * np.arange(len(q))
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
         return orbits.ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
@@ -243,24 +233,23 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         """Return places from flat ones."""
         return rows.reshape(-1, *self.motion.system.place_shape)
 
-    def _state(self, motion: Motion, sign: Any) -> State:
+    def _state(self, motion: tuple[Array, Array, Array], sign: Any) -> State:
         q, v, before = motion
         impulse = np.zeros(self.motion.system.constraints)  # unknown; a store takes NaN for a chunk that is lost
         return np.concatenate([q.ravel(), v, impulse, before, [sign]])
 
-    def _motion(self, state: State) -> Motion:
-        place, rate, _ = self.columns.values()
-        return self._places(state[:place])[0], state[place : place + rate], state[-1 - rate : -1]
 
+def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[tuple[Array, Array, Array], Array, Array]:
+    """Return the start with a momentum, by the root next to the velocity v, with its orientation and outcome.
 
-def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion, Array, Array]:
-    """Return the start with a momentum, by the root next to the velocity v."""
+    A start is a place, the velocity of its step, and the velocity of the step before.
+    """
     sign, _ = orientation(system, q, v, h)
     first, _, code = solve(system, h, q, p, v, v, sign)
     return (q, first, first), sign, code
 
 
-def _advance(system: Any, h: Array, state: Motion, sign: Array, steps: Array) -> tuple:
+def _advance(system: Any, h: Array, state: tuple[Array, Array, Array], sign: Array, steps: Array) -> tuple:
     """Take steps, at most `ROWS`; return how many were good, the end, the outcome, and the states with impulses."""
 
     def one(carry: tuple) -> tuple:
@@ -277,21 +266,14 @@ def _advance(system: Any, h: Array, state: Motion, sign: Array, steps: Array) ->
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[2] == 0), one, start)
 
 
-def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
-    """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
-    columns = compiled.decoded(_decode, system, h, q, v)
-    return columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
-
-
 def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
+    """Return displacement, momentum, energy and residual of a state."""
     residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
     momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
     return system.places.displacement(v, h), momentum, energy, residual
 
 
-def _after_parts(
-    system: Any, h: Array, number: Array, fractions: Array, x: Array, v: Array, p: Array
-) -> tuple[Array, Array]:
+def _after_parts(system: Any, h: Array, number: Array, fractions: Array, x: Array, v: Array, p: Array) -> tuple:
     """Return the places after parts of steps, and the velocities of the whole steps that begin there.
 
     One after another: the bits of each do not depend on the others. Rows with the number of the last one are left out.

@@ -64,9 +64,8 @@ def forms(system: LagrangeDAlembert, x: Array) -> Array:
 def constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return A v - b."""
     _, rates = jax.jvp(lambda y: holonomic(system, y), (x,), (system.places.rate(x, v),))
-    return jnp.concatenate(
-        [_velocity_constraint(system, x, v), rates, *(v[i : i + 1] - jax.grad(s)(x[-1]) for i, s in system.prescribed)]
-    )
+    own = _velocity_constraint(system, x, v)
+    return jnp.concatenate([own, rates, *(v[i : i + 1] - jax.grad(s)(x[-1]) for i, s in system.prescribed)])
 
 
 def _velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -220,9 +219,7 @@ def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
     """Return the admissible velocity with the components of a momentum along the constraint."""
 
     def correct(_: Array, v: Array) -> Array:
-        matrix, units = acceleration_matrix(system, x, v)
-        momentum_gap = p - momentum(system, x, v)
-        return v + solve_bordered(matrix, units, momentum_gap, -constraint(system, x, v))[0]
+        return v + bordered_solution(system, x, v, p - momentum(system, x, v), -constraint(system, x, v))[0]
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(p))
 
@@ -251,9 +248,9 @@ def bordered_matrix(mass: Array, right: Array, below: Array, kinetic: Array) -> 
     return jnp.concatenate([upper, lower]), Scaled(unit, a, f)
 
 
-def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tuple[Array, Array]:
-    r"""Solve $M x - A^T\lambda$ = force, F x = off, given the matrix without units."""
-    n = force.shape[0]
+def bordered_solution(system: LagrangeDAlembert, x: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
+    r"""Solve $M w - A^T\lambda$ = force, A w = off."""
+    n, (matrix, units) = len(force), acceleration_matrix(system, x, v)
     solution = jnp.linalg.solve(matrix, jnp.concatenate([force * units.velocity, off / units.constraints]))
     return solution[:n] * units.velocity, solution[n:] / units.forms
 

@@ -8,23 +8,22 @@ constraints $A v = b$ (of driven joints what their motors give), and what a Lagr
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo import systems
 from nonholo.base.checks import error, flow_times, flow_tolerances, is_traced, number, trailing
-from nonholo.base.results import Outcome, OutcomeError, conclude_flow
+from nonholo.base.results import Outcome, conclude_flow
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
-from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._orbit import ORBITS
 from nonholo.lagrange_dalembert.functions import configurations, in_blocks, in_double, place, places, room
 from nonholo.orbit import times_within
+from nonholo.systems.forces import refuse_table
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
 _REMEDY = "Pass the configuration, row by row, then the velocity."
@@ -40,18 +39,12 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
         extra: A force beside those of the system: of a table the row that acts.
     """
     _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (system.places.rate(q, v),))
-    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
-
-
-def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
-    r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    matrix, units = equations.acceleration_matrix(system, q, v)
-    return solve_bordered(matrix, units, force, off)
+    return equations.bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
 
 
 def admissible_velocity(system: Any, q: Array, v: Array) -> Array:
     """Return the admissible velocity next to one in the kinetic energy."""
-    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
+    return v - equations.bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
 
 
 def nearest_place(system: Any, x: Array) -> Array:
@@ -78,16 +71,9 @@ def nearest_place(system: Any, x: Array) -> Array:
     return jnp.where(size <= _NEAR, x.at[:n].add(z[:n]), jnp.nan)
 
 
-def refuse_table(owner: str, system: Any) -> None:
-    """Refuse forces that belong to steps."""
-    if system.is_driven:
-        systems.forces.refuse_table(f"{owner}(system=...)", system.table)
-
-
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
-    _ = system.places  # refused by the system of a store without functions
-    refuse_table("vector_field", system)
+    refuse_table("vector_field(system=...)", system.table)
     size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
 
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
@@ -121,14 +107,12 @@ _FINE, _COARSE = 1e-14, 1e-10  # relative errors of a step, by series and by dif
 def flow(system: Any, *, rtol: float | None, atol: float, **start: Any) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     time, first = _opening(system, **start)
-    return solve(system, first, time, rtol, atol)
+    return conclude_flow(solve(system, first, time, rtol, atol), time, _checked_errors(rtol, atol))
 
 
-def _opening(
-    system: Any, *, configuration: Any, times: Any, project: bool, **starts: Any
-) -> tuple[Float[np.ndarray, "K"], State]:
+def _opening(system: Any, *, configuration: Any, times: Any, project: bool, **starts: Any) -> tuple[np.ndarray, State]:
     """Return the checked times of a flow and its first place and velocity."""
-    refuse_table("flow", system)
+    refuse_table("flow(system=...)", system.table)
     time = flow_times(times)
     return time, checked_state(system, configuration, starts, time[0], project=project)
 
@@ -146,22 +130,19 @@ class Flights(NamedTuple):
 
     def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
         """Return the flow from a state at the requested times since then, the outcome and its message."""
-        try:
-            orbit = solve(
-                self.system, there.as_start().numbers[1:], there.time[0] + np.union1d(0.0, elapsed), *self.errors
-            )
-        except OutcomeError as early:
-            orbit = cast(Any, early.orbit)
+        orbit = self.solve(there, there.time[0] + np.union1d(0.0, elapsed))
         looks = orbit.solution.looks()
         return orbit.at(np.union1d(orbit.time, looks[looks < orbit.time[-1]])), orbit.outcome, ""
+
+    def solve(self, there: Any, time: np.ndarray) -> Any:
+        """Return the flow from a state at times, as far as it gets."""
+        return solve(self.system, there.as_start().numbers[1:], time, *self.errors)
 
     def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
         """Return the motion from several states, each up to the next one."""
         nodes = np.array([*(each.time[0] for each in begins), until])
-        spans = zip(begins, nodes[:-1], nodes[1:], strict=True)
-        flows = [
-            solve(self.system, each.as_start().numbers[1:], np.unique(span), *self.errors) for each, *span in spans
-        ]
+        times = map(np.unique, np.stack([nodes[:-1], nodes[1:]], axis=1))
+        flows = (self.successful(self.solve(each, time), time) for each, time in zip(begins, times, strict=True))
         return {"solution": Broken(nodes, tuple(flow.solution for flow in flows))}
 
     def successful(self, orbit: Any, time: np.ndarray) -> Any:
@@ -192,9 +173,7 @@ class Broken(NamedTuple):
         return float(self.nodes[0]), float(self.nodes[-1])
 
 
-def flights(
-    system: Any, *, rtol: float | None, atol: float, **start: Any
-) -> tuple[Flights, Float[np.ndarray, "K"], Any]:
+def flights(system: Any, *, rtol: float | None, atol: float, **start: Any) -> tuple[Flights, np.ndarray, Any]:
     """Check the arguments; return the flows of a system, the times and the first state."""
     (time, (x, v)), _ = _opening(system, **start), _checked_errors(rtol, atol)
     first = _orbit(system, time[:1], [x[None], v[None]], Outcome.successful, None)
@@ -206,13 +185,13 @@ def _checked_errors(rtol: float | None, atol: float) -> tuple[float, float]:
 
 
 def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
-    """Return the orbit from a checked place and velocity."""
+    """Return the orbit from a checked place and velocity, as far as it gets."""
     errors = _checked_errors(rtol, atol)
     motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    return conclude_flow(_orbit(system, time[:count], rows, outcome, solution).on_group(), time, errors)
+    return _orbit(system, time[:count], rows, outcome, solution).on_group()
 
 
 def at(orbit: Any, times: Any) -> Any:
@@ -222,17 +201,15 @@ def at(orbit: Any, times: Any) -> Any:
     return _orbit(orbit.system, time, rows, orbit.outcome, orbit.solution)
 
 
-def reflection(orbit: Any, normal: Float[np.ndarray, "n"], bounce: float, direction: int) -> Any:
-    r"""Return one state after the impulse of a wall along a covector; None where the motion is not toward it.
+def push(orbit: Any, normal: Float[np.ndarray, "n"], change: float) -> Any:
+    r"""Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap.
 
     The velocity w of its momentum becomes w + j u, the momentum p + j n: $M u - A^T\lambda = n$, A u = 0.
     """
     p, x, _ = orbit.as_start().numbers
-    w, push = in_double(answer, orbit.system, x, p, normal)
-    impulse = orbit.impulse_of_wall(orbit.rate_along(normal), normal @ push, bounce, direction)
-    if impulse is None:
-        return None
-    p, v = orbit.after_impulse(orbit.momentum, impulse * normal), orbit.after_impulse(w, impulse * push)[None]
+    w, u = in_double(answer, orbit.system, x, p, normal)
+    impulse = change / (normal @ u)
+    p, v = orbit.after_impulse(orbit.momentum, impulse * normal), orbit.after_impulse(w, impulse * u)[None]
     if orbit.is_discrete:
         return dataclasses.replace(orbit, momentum=p, body_velocity=v)
     after = _orbit(orbit.system, orbit.time, [x[None], v], orbit.outcome, orbit.solution)
@@ -242,7 +219,7 @@ def reflection(orbit: Any, normal: Float[np.ndarray, "n"], bounce: float, direct
 def answer(system: Any, x: Array, p: Array, normal: Array) -> tuple[Array, Array]:
     """Return the velocity of a momentum, and how velocities change with an impulse along a covector."""
     w = equations.inverse_legendre(system, x, p)
-    return w, bordered_solution(system, x, w, normal, jnp.zeros(system.constraints))[0]
+    return w, equations.bordered_solution(system, x, w, normal, jnp.zeros(system.constraints))[0]
 
 
 def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome, solution: Any) -> Any:
@@ -255,14 +232,12 @@ def works(orbit: Any) -> Float[np.ndarray, "K 2"]:
     """Return the work on a driven system since the first state, and minus that of friction, by the trapezoidal rule."""
     system, time, h = orbit.system, orbit.time, np.diff(orbit.time)
     x, p = places(system, orbit.configuration, time), orbit.momentum
-    if system.table is not None:
-        if orbit.lacks_forces:
-            got = f"steps {orbit.step[:3].tolist()} ... with a force for each step"
-            raise error("Orbit.work", "contain every step", got, "Run with save_every=1.")
-        rows = system.table.acting(orbit.step)
-        before, after = _powers(system, x, p, rows), _powers(system, x, p, np.roll(rows, 1, axis=0))
-    else:
-        before = after = _powers(system, x, p, np.zeros_like(p))
+    if orbit.lacks_forces:
+        got = f"steps {orbit.step[:3].tolist()} ... with a force for each step"
+        raise error("Orbit.work", "contain every step", got, "Run with save_every=1.")
+    rows = np.zeros_like(p) if system.table is None else system.table.acting(orbit.step)
+    before = _powers(system, x, p, rows)
+    after = before if system.table is None else _powers(system, x, p, np.roll(rows, 1, axis=0))
     gains = np.cumsum(h[:, None] * (before[:-1] + after[1:]) / 2, axis=0)
     return np.concatenate([np.zeros((min(1, len(time)), 2)), gains])
 

@@ -128,11 +128,6 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         """Where it moves."""
         return Poses(self.group, self.is_driven)
 
-    @property
-    def energy_argument(self) -> str:
-        """The name of the argument that gives the energy."""
-        return "discrete_lagrangian" if self.lagrangian is None else "lagrangian"
-
     @functools.cached_property
     def plain(self) -> Any:
         """The system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
@@ -184,11 +179,8 @@ def _sum(first: Callable[..., Array], second: Callable[..., Array]) -> Callable[
 
 def _inertia(system: GroupLagrangeDAlembert) -> Array:
     """Return the inertia operator: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
-
-    def at(x: Array) -> Array:
-        return system.discrete_lagrangian(system.group.exp(x), jnp.ones(()))
-
-    return jax.hessian(at)(jnp.zeros(system.group.dim))
+    action = jax.hessian(lambda x: system.discrete_lagrangian(system.group.exp(x), jnp.ones(())))
+    return action(jnp.zeros(system.group.dim))
 
 
 @functools.lru_cache(maxsize=64)

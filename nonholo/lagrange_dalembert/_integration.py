@@ -10,20 +10,11 @@ from nonholo.base.numerics.time_sweep import good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
+from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity
 from nonholo.lagrange_dalembert._tangents import flow_slopes
 from nonholo.lagrange_dalembert.functions import in_double, in_rows
 
 _RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
-
-
-def flow(
-    system: Any, first: State, times: np.ndarray, errors: tuple[float, float]
-) -> tuple[list[np.ndarray], "Pieces"]:
-    """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
-    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
-    rows = good_rows(first, rest, good, len(times))
-    return rows, Pieces(system, times[: len(rows[0])], rows, errors)
 
 
 class Pieces(NamedTuple):
@@ -63,13 +54,21 @@ class Pieces(NamedTuple):
         return self.times
 
 
+def flow(system: Any, first: State, times: np.ndarray, errors: tuple[float, float]) -> tuple[list[np.ndarray], Pieces]:
+    """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
+    rows = good_rows(first, rest, good, len(times))
+    return rows, Pieces(system, times[: len(rows[0])], rows, errors)
+
+
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
 
     def settle(current: State) -> State:
         """Return the admissible state next to one in the kinetic energy."""
         q, v = system.places.normalize(current[0]), current[1]
         if system.holonomic is not None:
-            back = bordered_solution(system, q, v, jnp.zeros_like(v), equations.holonomic_residual(system, q))[0]
+            away = equations.holonomic_residual(system, q)
+            back = equations.bordered_solution(system, q, v, jnp.zeros_like(v), away)[0]
             q = q - jnp.pad(back, (0, system.is_driven))
         return q, admissible_velocity(system, q, v)
 

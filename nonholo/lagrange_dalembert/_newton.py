@@ -57,9 +57,7 @@ def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array
     return jnp.sign(jnp.linalg.det(matrix)), jnp.linalg.svd(matrix, compute_uv=False)[-1]
 
 
-def solve(
-    system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
-) -> tuple[Array, Array, Array]:
+def solve(system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, ...]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`.
 
     Where forces balance at rest velocities are rounding errors, and so are corrections: they are compared with what the
@@ -119,9 +117,7 @@ def of_step(system: Any, q: Array, p: Array, near: Array, h: Array) -> Equations
     return Equations(lambda v: newton_matrix(system, q, v, h, kinetic), equations.forms(system, q), p, rounding)
 
 
-def newton_matrix(
-    system: Any, q: Array, v: Array, h: Array, kinetic: Array
-) -> tuple[Array, Scaled, tuple[Array, Array]]:
+def newton_matrix(system: Any, q: Array, v: Array, h: Array, kinetic: Array) -> tuple[Array, Scaled, tuple[Array, ...]]:
     """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
 
     def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
@@ -176,16 +172,12 @@ def root(system: Equations, near: Array, guess: Array, sign: Array) -> tuple[Arr
     path_start = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
     path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, path_start)
     finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
-    return path.root.velocity, path.root.multipliers, jnp.where(finite, _outcome(path), int(Outcome.nonfinite))
-
-
-def _outcome(path: _Path) -> Array:
-    """Return what ended a path if it did not arrive."""
     singular = path.root.regularity < SINGULAR
     is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
     code = jnp.where(is_folded, int(Outcome.no_real_branch), code)
-    return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
+    code = jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
+    return path.root.velocity, path.root.multipliers, jnp.where(finite, code, int(Outcome.nonfinite))
 
 
 def _newton(system: Equations, v: Array, multipliers: Array, offset: Array) -> Root:

@@ -19,11 +19,10 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
 from nonholo.orbit import AbstractMotion, AbstractOrbit, First
 from nonholo.systems import AbstractCoordinateSystem, Start
+from nonholo.systems.forces import refuse_table
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
-Labeled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
-"""Dimensions after `step`, numbers and attributes."""
 
 _SHARED: Labels = {
     "multipliers": (("constraint",), "impulses of constraint to the next state; of a flow forces of constraint"),
@@ -86,9 +85,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         del outcome
         return dataclasses.replace(ahead, time=self.time, step=self.step)
 
-    def reflection(self, normal: Float[np.ndarray, "n"], bounce: float, direction: int) -> Self | None:
-        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
-        return room("_flow").reflection(self, normal, bounce, direction)
+    def push(self, normal: Float[np.ndarray, "n"], change: float) -> Self:
+        """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
+        return room("_flow").push(self, normal, change)
 
     def rate_along(self, normal: Float[np.ndarray, "n"]) -> float:
         """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
@@ -186,7 +185,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         s - m; on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by
         its equation of variation.
         """
-        return room("_tangents").tangent_map(self)
+        maps, rows, units, _ = room("_tangents").changes(self)
+        return room("_tangents").among_admissible(maps, rows, np.ones_like(units))
 
     def at(self, times: Any) -> "AbstractCoordinateOrbit":
         """Return the states of a flow at any of its times, from its Taylor series, without a new run.
@@ -203,8 +203,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             raise error("Orbit.at(...)", "be called on a flow", got, remedy)
         return room("_flow").at(self, times)
 
-    def labeled_rows(self) -> dict[str, Labeled]:
-        """Return its rows by name, with their dimensions and meanings."""
+    def labeled_rows(self) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
+        """Return its rows by name: dimensions after `step`, numbers and attributes."""
         rows, labels = self.rows(), (self._labels | _SHARED).items()
         return {name: (axes, rows[name], {"long_name": meaning}) for name, (axes, meaning) in labels if name in rows}
 
@@ -315,8 +315,6 @@ class GroupOrbit(AbstractCoordinateOrbit):
         """The group."""
         return self.system.group
 
-    space = group
-
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
 
@@ -326,10 +324,7 @@ class CoordinateMotion:
 
     system: Any
     time_step: float | None
-    columns: ClassVar[tuple[str, ...]] = (
-        *("time", "configuration", "displacement", "body_velocity"),
-        *("momentum", "multipliers", "energy", "constraint_residual"),
-    )
+    columns: ClassVar[tuple[str, ...]] = (*_ROWS[1:], "multipliers")
 
     def orbit(self, *, branch: str, **rows: Any) -> AbstractCoordinateOrbit:
         """Return the orbit of rows of the columns; those of multipliers that do not exist are left out.
@@ -342,16 +337,13 @@ class CoordinateMotion:
         impulses = rows["multipliers"] if system.constraints else rows["body_velocity"][:, :0]  # none are stored
         rows["multipliers"] = impulses if impulses is None else impulses[:last]
         shapes = {name: None if rows[name] is None else rows[name].shape[1:] for name in self.columns}
-        if shapes != self._shapes():
+        q, v = system.shapes
+        demand = {"configuration": q, "displacement": None if last is None else q, "body_velocity": v, "momentum": v}
+        demand = dict.fromkeys(self.columns, ()) | demand | {"multipliers": (system.constraints,)}
+        if shapes != demand:
             remedy = "The store was edited: copy it again from its source, or run it again."
             raise error("load_orbit(path=...)", f"hold the columns of {system.name!r}", f"shapes {shapes}", remedy)
         return ORBITS[system.orbits](**rows, system=system, time_step=self.time_step)
-
-    def _shapes(self) -> dict[str, tuple[int, ...] | None]:
-        q, v = self.system.shapes
-        places = {"configuration": q, "displacement": None if self.time_step is None else q}
-        rates = {"body_velocity": v, "momentum": v, "multipliers": (self.system.constraints,)}
-        return {"time": (), **places, **rates, "energy": (), "constraint_residual": ()}
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -378,14 +370,14 @@ class CoordinateFlow(CoordinateMotion):
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
         del with_poses
-        room("_flow").refuse_table(start.owner, self.system)
+        refuse_table(f"{start.owner}(system=...)", self.system.table)
         state = room("_discretization").checked_state(
             self.system, start.configuration, {start.name: start.value}, self.begins, start.owner, project=start.project
         )
         return First((room("_start").momentum(self.system, *state), *state))
 
     def solve(self, first: First, times: Float[np.ndarray, "K"], rtol: float, *, reconstruct: bool) -> Any:
-        """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""
+        """Return the orbit from a checked start, as far as it gets; an `rtol` of 0 is the default of its method."""
         del reconstruct
         return room("_flow").solve(self.system, first.numbers[1:], times, rtol or None)
 

@@ -51,13 +51,7 @@ class _Node(NamedTuple):
 
 
 def roll(
-    sizes: tuple[int, int],
-    controls: Any,
-    start: tuple[str, Array, Array],
-    family: Any,
-    numbers: tuple[Array, ...],
-    h: Array,
-    work: Array | None = None,
+    sizes: tuple[int, int], controls: Any, start: tuple[Any, ...], family: Any, numbers: Any, h: Any, work: Any = None
 ) -> CoordinateRollout:
     """Return the orbit from a start, which has a name, coordinates and a value, with the outcome up to each state.
 
@@ -87,8 +81,7 @@ def roll(
     begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near), nothing)
     nodes = run_nodes(step, begin, rows, sizes, work)
 
-    decoded = functools.partial(_decoded, system, h)
-    states = jax.vmap(decoded)(nodes.x, nodes.y[0], nodes.control)
+    states = jax.vmap(functools.partial(_decoded, system, h))(nodes.x, nodes.y[0], nodes.control)
     acting = jnp.zeros_like(states[0]) if rows is None else nodes.control
     good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in (*states, acting))
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code)
@@ -109,9 +102,7 @@ def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tu
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0,))
-def step_root(
-    family: Any, arguments: tuple[tuple[Array, ...], Array, Array, Array], search: tuple[Array, Array, Array]
-) -> tuple[Array, Array]:
+def step_root(family: Any, arguments: tuple[Any, ...], search: tuple[Array, ...]) -> tuple[Array, Array]:
     """Return velocity with multipliers of the step from a place with a momentum, and the outcome.
 
     The search begins near a velocity, with a guess, and keeps an orientation; derivatives do not see it.

@@ -22,10 +22,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.results import OUTCOMES, Outcome
-from nonholo.base.types import Array, Bool, Float
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import CoordinateStepper
-from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert.functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems.forces import Contacts, friction, update_slope
@@ -34,8 +33,6 @@ _MOST, _ROUNDING, _SEEN = 40, 1e-14, 1e-14  # corrections of an impulse; relativ
 
 Beginning = tuple[int, np.ndarray, np.ndarray, Any, State | None]
 """The outcome, velocity and impulse j of the friction of a step, which contacts hold; if all, the state of a run."""
-Held = Bool[np.ndarray, "m"]
-"""Which contacts hold."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -123,7 +120,7 @@ class SlipStepper(AbstractStepper[Any]):
             yields = holds & (contacts.sizes(self._reactions(x, p, beginning)[None])[0] > most)
         return beginning
 
-    def _slide(self, node: Any, holds: Held, contacts: Contacts, along: tuple[np.ndarray, np.ndarray]) -> Beginning:
+    def _slide(self, node: Any, holds: np.ndarray, contacts: Contacts, along: Any) -> Beginning:
         """Begin a step in which some contacts slide, from impulses at its beginning that would hold them, and forms."""
         (x, p, near, v), (first, forms) = node, along
         h, size = np.float64(self.motion.time_step), np.linalg.norm
@@ -153,7 +150,7 @@ class SlipStepper(AbstractStepper[Any]):
         before = self._across(holds, x, leaving) - self._across(holds, x, p + j / 2 @ own)
         return before - self._across(holds, end, arriving + j / 2 @ ends)
 
-    def _across(self, holds: Held, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+    def _across(self, holds: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
         """Return the parts of a momentum along the forms of contacts that hold while others slide."""
         parts = np.zeros(len(self.rows))
         if holds.any():
@@ -218,7 +215,7 @@ def _node(system: Any, x: Array, p: Array, rows: Array) -> tuple[Array, Array]:
     """Return the momenta of slips in a momentum, and the matrix of those of unit slips."""
     w, A, dual = equations.inverse_legendre(system, x, p), equations.forms(system, x), jnp.linalg.pinv(rows).T
     across = jnp.linalg.pinv(A).T @ (p - equations.momentum(system, x, w))
-    units = jax.vmap(lambda off: bordered_solution(system, x, w, jnp.zeros_like(p), off)[1])(dual)
+    units = jax.vmap(lambda off: equations.bordered_solution(system, x, w, jnp.zeros_like(p), off)[1])(dual)
     return dual @ across, dual @ units.T
 
 

@@ -32,9 +32,7 @@ def _argument(system: Any, name: str) -> str:
     return f"{type(system).__name__}({name}=...)"
 
 
-def point(
-    owner: str, system: Any, configuration: Any, time: float = 0.0, *, project: bool = False
-) -> Float[np.ndarray, "x"]:
+def point(owner: str, system: Any, configuration: Any, time: float = 0.0, *, project: bool = False) -> np.ndarray:
     """Return the place of an admissible configuration at which the constraint forms are finite and independent.
 
     With `project` it is the admissible one next to the configuration in the kinetic energy.
@@ -120,10 +118,8 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
         raise error(where, "have derivatives along the displacement that span the constraint forms", got, remedy)
 
 
-def velocity(
-    owner: str, system: Any, q: Float[np.ndarray, "x"], value: Any, *, project: bool
-) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
-    """Return the momentum of a velocity that satisfies the constraint, at which the Lagrangian is regular, and this.
+def velocity(owner: str, system: Any, q: np.ndarray, value: Any, *, project: bool) -> tuple[np.ndarray, ...]:
+    """Return the momentum, the place and the velocity, which satisfies the constraint of a Lagrangian regular there.
 
     With `project` it is the admissible one closest to the value in the kinetic energy.
     """
@@ -132,18 +128,18 @@ def velocity(
     p, units, A, residual = _check_regular(system, q, v)
     if project:
         v = in_double(admissible_velocity, system, q, v)
-        return momentum(system, q, v), v
+        return momentum(system, q, v), q, v
     if not np.count_nonzero(residual):
-        return p, v
+        return p, q, v
     rounding = np.finfo(float).eps * np.linalg.norm(A * units, axis=1) * np.linalg.norm(v / units)  # of small terms
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
-    return p, v
+    return p, q, v
 
 
 def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the momentum and what follows the matrix in `_kinetics`, of a Lagrangian that determines accelerations."""
-    what = _argument(system, system.energy_argument)
+    what = _argument(system, "discrete_lagrangian" if system.lagrangian is None else "lagrangian")
     value, *gradients, matrix, units, A, residual = _at(_kinetics, system, q, v)
     if not all(is_moderate(x, np.inf) for x in (value, *gradients)):
         number, *slopes = (x.tolist() for x in (value, *gradients))

@@ -127,7 +127,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     of_time: ClassVar[dict[str, int]] = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
-    energy_argument: ClassVar[str] = "lagrangian"
     has_limit: ClassVar[bool] = False
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
@@ -135,8 +134,10 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     def __post_init__(self) -> None:
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
-        parameters, coordinates = tracing.Parameters(self.parameters), _names(self.coordinates, dimension)
-        assign(self, dimension=dimension, parameters=parameters, coordinates=coordinates)
+        coordinates = tuple(f"q{i}" for i in range(1, dimension + 1))
+        if not isinstance(self.coordinates, tuple) or self.coordinates:
+            coordinates = names(_argument("coordinates"), self.coordinates, dimension)
+        assign(self, dimension=dimension, parameters=tracing.Parameters(self.parameters), coordinates=coordinates)
         text(_argument("name"), self.name)
         _check_heading(_argument("heading"), self.heading, self.coordinates)
         if not callable(self.outline):
@@ -145,10 +146,7 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         for name in ("discrete_lagrangian", "discrete_constraints"):
             assign(self, **{name: tracing.with_time_step(getattr(self, name), len(self._shapes_given))})
         assign(self, prescribed=_motions(self.prescribed, dimension, self._shapes_given))
-        self._trace_functions()
-
-    def _trace_functions(self) -> None:
-        n, of = self.dimension, f"{self.dimension} coordinates"
+        n, of = dimension, f"{dimension} coordinates"
         q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
         self._trace("lagrangian", of, (q, q), tracing.checked_value, (), of)
         stack = "Stack one row per constraint; pass None for no constraint."
@@ -188,13 +186,12 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         """
         if potential is None and force is None:
             return self
-        force = self._with_force(force)
+        force, lagrangian = self._with_force(force), self.lagrangian
         potential = tracing.with_parameters(potential, 1) if self.parameters else potential
         if potential is not None:
-            q = jax.ShapeDtypeStruct((self.dimension,), float)
-            of = f"{self.dimension} coordinates"
+            q, of = jax.ShapeDtypeStruct((self.dimension,), float), f"{self.dimension} coordinates"
             potential = tracing.checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
-        lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
+            lagrangian = _with_potential(lagrangian, potential, last=bool(self.parameters))
         return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
@@ -225,8 +222,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:
     """Return a Lagrangian less a potential; both may take parameters last."""
-    if potential is None:
-        return lagrangian
 
     @functools.wraps(lagrangian)  # whose signature says whether the time is passed
     def less(q: Array, v: Array, *rest: Any) -> Array:
@@ -252,13 +247,6 @@ def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple
 
 def _argument(argument: str) -> str:
     return f"LagrangeDAlembert({argument}=...)"
-
-
-def _names(value: Any, n: int) -> tuple[str, ...]:
-    """Return the names of the coordinates: by default q1 and so on."""
-    if isinstance(value, tuple) and not value:
-        return tuple(f"q{i}" for i in range(1, n + 1))
-    return names(_argument("coordinates"), value, n)
 
 
 def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> None:

@@ -17,10 +17,11 @@ from nonholo.base.traced import FEW, call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
-from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
+from nonholo.lagrange_dalembert._flow import acceleration, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
+from nonholo.systems.forces import refuse_table
 
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
 
@@ -31,7 +32,7 @@ Slopes = tuple[Array, Array, Array]
 def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked place and velocity of a flow, or of the step that a map begins with."""
     system = motion.system
-    refuse_table(owner, system)
+    refuse_table(f"{owner}(system=...)", system.table)
     still = np.zeros(system.shapes[1])
     x, v = checked_state(system, configuration, {"body_velocity": still if velocity is None else velocity}, 0.0, owner)
     if motion.time_step is None:
@@ -73,12 +74,6 @@ def slopes(
     return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
-def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
-    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
-    maps, rows, units, _ = changes(orbit)
-    return among_admissible(maps, rows, np.ones_like(units))
-
-
 def among_admissible(
     maps: Float[np.ndarray, "L d d"], rows: Float[np.ndarray, "K c d"], units: Float[np.ndarray, "d"]
 ) -> Float[np.ndarray, "L f f"]:
@@ -102,11 +97,10 @@ def changes(orbit: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         raise error(where, "have a state", "none", "Run longer.")
     x, v = places(system, orbit.configuration, time), orbit.body_velocity
     _, slope, rows = slopes(motion, x, v)
-    maps = (
-        slope[:-1] + np.eye(slope.shape[-1])
-        if orbit.is_discrete
-        else room("_integration").transitions(system, x, v, time)
-    )
+    if orbit.is_discrete:
+        maps = slope[:-1] + np.eye(slope.shape[-1])
+    else:
+        maps = room("_integration").transitions(system, x, v, time)
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time, and places that it prescribes
     matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
     maps, rows = maps[:, matters][:, :, matters], rows[..., matters]
@@ -159,10 +153,8 @@ def _slopes_of(system: Any, h: Array | None, change: Callable[[Array, Array], Ar
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
         xi, w = z[:size], z[size:]
         value, place = change(xi, w), system.places.beside(x, xi)
-        return (
-            value,
-            jnp.concatenate([equations.constraint_of(system, h, place, w), equations.holonomic(system, place)]),
-        ), value
+        limits = jnp.concatenate([equations.constraint_of(system, h, place, w), equations.holonomic(system, place)])
+        return (value, limits), value
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
     return value, slope, rows

@@ -179,7 +179,6 @@ class AbstractOrbit(Keeper, abc.ABC):
     def with_step(self: SelfT, ahead: SelfT, outcome: Outcome) -> SelfT:
         """Return one state with the step of a run that began there, as a state of that run, and what became of it."""
 
-    @abc.abstractmethod
     def reflection(self: SelfT, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> SelfT | None:
         r"""Return one state after the impulse of a wall along a covector, which reverses its speed along that.
 
@@ -191,6 +190,12 @@ class AbstractOrbit(Keeper, abc.ABC):
         Returns:
             None where the motion is not toward the wall.
         """
+        rate = self.rate_along(normal)
+        return self.push(normal, -(1 + bounce) * rate) if rate * direction > 0 else None
+
+    @abc.abstractmethod
+    def push(self: SelfT, normal: Float[np.ndarray, "dim"], change: float) -> SelfT:
+        """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
 
     @abc.abstractmethod
     def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
@@ -208,14 +213,6 @@ class AbstractOrbit(Keeper, abc.ABC):
         after = momentum + change
         return np.where(np.abs(after) <= _ENDED * np.abs(change), 0.0, after)
 
-    @staticmethod
-    def impulse_of_wall(rate: float, response: Any, bounce: float, direction: int) -> Any:
-        """Return the size of the impulse along a normal from the rate of the gap and its change by a unit impulse.
-
-        None where the motion is not toward the wall.
-        """
-        return -(1 + bounce) * rate / response if rate * direction > 0 else None
-
     def refuse_reset(self, where: str) -> None:
         """Refuse impacts of motions that have no reflection in the energy."""
 
@@ -232,9 +229,9 @@ class AbstractOrbit(Keeper, abc.ABC):
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
 
-    @abc.abstractmethod
     def of_rows(self: SelfT, rows: dict[str, np.ndarray]) -> SelfT:
         """Return the orbit of other rows."""
+        return dataclasses.replace(cast(Any, self), **rows)
 
     def chosen(self: SelfT, states: slice | np.ndarray) -> SelfT:
         """Return some of the states, by a slice, a mask or their numbers, each with the same `save_every` as before."""

@@ -150,23 +150,14 @@ Decoder: TypeAlias = BodyDecoder | ClosedDecoder
 
 
 def decoder_of(system: System) -> Decoder:
-    """Return the decoder of a system."""
-    numbers = _reading_of(system)
-    return BodyDecoder(system) if numbers is None else ClosedDecoder(numbers)
-
-
-def _reading_of(system: System) -> decoding.Reading | None:
-    """Return the numbers of a body that has two admissible directions on SO(3) or SE(2); None of others."""
+    """Return the decoder of a system: the compiled one if it has two admissible directions on SO(3) or SE(2)."""
     group = system.group
-    if group.curvature is None or system.is_spatial:
-        return None
-    frame, S = system.frame, system.constraint_subspace
-    if len(S) != 2 or system.canonical.inertia_factors is None:
-        return None
-    T, d = system.canonical.inertia_factors
+    if group.curvature is None or system.is_spatial or system.rank != 2 or system.canonical.inertia_factors is None:
+        return BodyDecoder(system)
+    (T, d), frame, S = system.canonical.inertia_factors, system.frame, system.constraint_subspace
     own, arms, (across,) = is_own_frame(system), system.canonical.constraint_subspace.T, system.annihilator
     arms = arms if own else group.adjoint(frame) @ arms
-    return decoding.Reading(
+    numbers = decoding.Reading(
         curvature=group.curvature,
         arms=_flat(arms),
         pulls=_flat(system.inertia_operator @ arms),
@@ -176,6 +167,7 @@ def _reading_of(system: System) -> decoding.Reading | None:
         factors=(float(T[1, 0]), float(d[0]), float(d[1])),
         is_turned=not own,
     )
+    return ClosedDecoder(numbers)
 
 
 def _flat(matrix: np.ndarray) -> Any:

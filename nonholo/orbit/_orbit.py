@@ -214,10 +214,6 @@ class Orbit(AbstractOrbit):
         """Return the arrays with a row for each state."""
         return {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
 
-    def of_rows(self, rows: dict[str, np.ndarray]) -> "Orbit":
-        """Return the orbit of other rows."""
-        return dataclasses.replace(self, **cast(Any, rows))
-
     def with_headings(self, before: float | None) -> "Orbit":
         """Return states of the plane with headings that continue from the given one; others as they are."""
         pose = self.canonical_pose
@@ -240,20 +236,18 @@ class Orbit(AbstractOrbit):
         chart = ahead.canonical_chart
         return dataclasses.replace(self, cayley=chart if outcome == Outcome.successful else np.full_like(chart, np.nan))
 
-    def reflection(self, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> "Orbit | None":
-        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
-        nu, push = self._push_of(normal)
-        impulse = self.impulse_of_wall(self.rate_along(normal), push @ nu, bounce, direction)
-        if impulse is None:
-            return None
-        momentum = self.after_impulse(self.reduced_momentum, self.system.to_canonical(impulse * nu))
+    def push(self, normal: Float[np.ndarray, "dim"], change: float) -> "Orbit":
+        """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
+        nu, answer = self._answer_to(normal)
+        impulse = self.system.to_canonical(change / (answer @ nu) * nu)
+        momentum = self.after_impulse(self.reduced_momentum, impulse)
         return dataclasses.replace(self, reduced_momentum=momentum)
 
     def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
         """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
-        return self.sum_of_rates(self._push_of(normal)[1] * self.restricted_momentum[0])
+        return self.sum_of_rates(self._answer_to(normal)[1] * self.restricted_momentum[0])
 
-    def _push_of(self, normal: Float[np.ndarray, "dim"]) -> tuple[np.ndarray, np.ndarray]:
+    def _answer_to(self, normal: Float[np.ndarray, "dim"]) -> tuple[np.ndarray, np.ndarray]:
         """Return a covector along the constraint, and the velocity of this momentum."""
         nu = self.system.restrict_at(normal, self.configuration[0])
         return nu, self.system.restricted_velocity(nu, self.configuration[0])

@@ -35,11 +35,6 @@ class First(NamedTuple):
         """Return the start of one member, or the starts of some."""
         return First(tuple(x[members] for x in self.numbers), None if self.demand is None else self.demand[members])
 
-    @property
-    def places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Momenta, and poses or places."""
-        return self.numbers[0], self.numbers[1]
-
 
 class Plan(NamedTuple):
     """The blocks of a run: block b holds the saved states b * rows to (b + 1) * rows - 1.
@@ -167,10 +162,8 @@ def write_first(state: State, rows: Rows) -> None:
 
 def keep_row(state: State, rows: Rows, place: int) -> None:
     """Write the row at a place of rows into a state."""
-    begin = 0
-    for column in rows:
-        end = begin + column.shape[1]
-        state[begin:end], begin = column[place], end
+    row = np.concatenate([column[place] for column in rows])
+    state[: len(row)] = row
 
 
 @runtime_checkable

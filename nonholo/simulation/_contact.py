@@ -9,17 +9,16 @@ import dataclasses
 import functools
 import itertools
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
 from nonholo.continuous import ContinuousFlow, Problem, Solved, States, solver_of
-from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.orbit import Crossings, Orbit
 from nonholo.simulation._crossings import between_times, of_requested
-from nonholo.simulation._event import Event
-from nonholo.simulation._search import Watch, search
+from nonholo.simulation._search import Events, Watch, search
 
 _TURN = 2 * np.pi
 _MOST = 200  # impacts in a step
@@ -30,9 +29,7 @@ _NO_TIME = 8  # units in the last place of a time
 _AHEAD = 2.0 ** np.arange(-10, 1)  # of a step, where the rate of a gap says whether the body is pressed
 
 
-def after_contact(
-    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, node: Orbit
-) -> tuple[Any, Watch, Outcome]:
+def after_contact(begin: Callable[[Any], tuple[Any, Outcome]], watch: Watch, node: Orbit) -> tuple[Any, Watch, Outcome]:
     """Take a step from a node at a wall, or what is left of it after the impact that was seen last.
 
     Args:
@@ -157,21 +154,8 @@ def _search_rest(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, s
     return dataclasses.replace(new_watch, part=watch.part, parts=parts)
 
 
-@runtime_checkable
-class Flights(Protocol):
-    """The flows from states of a motion: of a system on a group, or in coordinates."""
-
-    def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
-        """Return the flow from a state at the requested times since then, the outcome and its message."""
-        ...
-
-    def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
-        """Return the field by which orbits know the motion from several states, each up to the next one."""
-        ...
-
-
 class BodyFlights(NamedTuple):
-    """The flows of a body, by a method and to tolerances."""
+    """The flows from states of a body, by a method and to tolerances; `lagrange_dalembert` has those in coordinates."""
 
     system: Any
     method: str | None
@@ -183,7 +167,7 @@ class BodyFlights(NamedTuple):
         return flow, solution.outcome, solution.fault
 
     def joined(self, begins: list[Orbit], until: float) -> dict[str, Any]:
-        """Return the motion from several states, each up to the next one."""
+        """Return the field by which orbits know the motion from several states, each up to the next one."""
         states = functools.partial(self._states, begins)
         return {"motion": ContinuousFlow(self.system, (float(begins[0].time[0]), until), states)}
 
@@ -219,8 +203,8 @@ class BodyFlights(NamedTuple):
 _SPAN = 2.0  # times that from one impact to the next are solved for at first after it
 
 
-def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
-    """Return the flow from its first state at requested times, and what a function said that ended it."""
+def flow_through_impacts(first: Any, time: np.ndarray, flights: Any, events: Events) -> tuple[Any, str]:
+    """Return the flow from its first state at requested times, by flights, and what a function said that ended it."""
     there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
     watch, _ = search(Watch(events, between_times(there, 1.0)), there)
     outcome, message, pace = Outcome.successful, "", 0.0
@@ -236,10 +220,15 @@ def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events:
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
             outcome, message, span = max(outcome, flown, looks.outcome), fault, 2 * span
-    return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
+    log, until = watch.log(), float(there.time[0])
+    if log.stopped_by is not None:
+        until = float(log[log.stopped_by].time[-1])
+    motion = flights.joined([first.with_headings(None), *watch.impacts], until)  # each from the last impact before it
+    orbit = dataclasses.replace(first, **motion).at(time[time <= until])
+    return dataclasses.replace(orbit, outcome=outcome, events=of_requested(log, time, 1.0, **motion)), message
 
 
-def _pass_impact(flights: Flights, watch: Watch, looks: Orbit, least: float) -> tuple[Orbit, Watch, Outcome]:
+def _pass_impact(flights: Any, watch: Watch, looks: Orbit, least: float) -> tuple[Orbit, Watch, Outcome]:
     """Return the state after the first step between two looks with an impact, or the last one; what is known there.
 
     One that begins at a wall leads to the first look after the least time, or the last one.
@@ -258,7 +247,7 @@ def _pass_impact(flights: Flights, watch: Watch, looks: Orbit, least: float) -> 
     return there if after is None else dataclasses.replace(after, time=ends), watch, outcome
 
 
-def _part(flights: Flights, length: float, flows: dict[bytes, Any], states: Orbit, fractions: np.ndarray) -> Orbit:
+def _part(flights: Any, length: float, flows: dict[bytes, Any], states: Orbit, fractions: np.ndarray) -> Orbit:
     """Return what is reached from one state, in all rows, after fractions of a time; NaN if that is not solved for."""
     if not len(states):
         return states
@@ -270,14 +259,3 @@ def _part(flights: Flights, length: float, flows: dict[bytes, Any], states: Orbi
     if outcome != Outcome.successful:
         return dataclasses.replace(states, **{momentum: np.full_like(getattr(states, momentum), np.nan)})
     return flow.at(np.minimum(first.time + length * fractions, flow.time[-1]))
-
-
-def _whole(first: Any, time: np.ndarray, flights: Flights, watch: Watch, until: float, outcome: Outcome) -> Any:
-    """Return the flow at requested times up to one, each from the last impact before it."""
-    log = watch.log()
-    if log.stopped_by is not None:
-        until = float(log[log.stopped_by].time[-1])
-    motion = flights.joined([first.with_headings(None), *watch.impacts], until)
-    orbit = dataclasses.replace(first, **motion).at(time[time <= until])
-    crossings = tuple(of_requested(part, time, 1.0, **motion) for part in log.found)
-    return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, crossings, log.stopped_by))

@@ -2,30 +2,31 @@
 
 import dataclasses
 import functools
-from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
-from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit, State
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit
 from nonholo.simulation._event import Event, checked_events, has_resets, values_at
 from nonholo.simulation._search import Part, Watch, piece_of, search
 
 
 def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
-    """Return what a run looks for, refused where parts of its steps are not defined."""
+    """Return what a run looks for, refused where parts of its steps are not defined, or none begins at an impact."""
     by_name = checked_events(owner, events)
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
         demand = "be left out where a part of a step is not defined"
         raise error(f"{owner}(events=...)", demand, stepper.part_refused, remedy)
-    watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_step, stepper))
-    if has_resets(by_name):
-        _check_walls(owner, stepper, by_name)
-    return watch
+    motion = stepper.motion
+    if not getattr(stepper, "with_poses", True):
+        refuse_resets(owner, by_name, "impacts of a run without poses: reconstruct=False")
+    if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
+        refuse_resets(owner, by_name, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
+    return Watch(by_name, motion.after_parts, functools.partial(_with_step, stepper))
 
 
 def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
@@ -33,15 +34,6 @@ def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
     if has_resets(events):
         remedy = "Leave the reset out, or run one body by `simulate`, `iterate` or `flow`."
         raise error(f"{owner}(events=...)", "have no reset", got, remedy)
-
-
-def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Event]) -> None:
-    """Refuse impacts of motions whose steps cannot begin at an impact."""
-    motion = stepper.motion
-    if not getattr(stepper, "with_poses", True):
-        refuse_resets(owner, events, "impacts of a run without poses: reconstruct=False")
-    if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
-        refuse_resets(owner, events, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
 
 
 def check_resets(events: dict[str, Event], there: Any) -> None:
@@ -60,14 +52,9 @@ def check_resets(events: dict[str, Event], there: Any) -> None:
                 raise error(f"Event(reset=...) of {name!r}", "depend on the pose alone", got, remedy)
 
 
-def begun_at(stepper: AbstractStepper[Any], states: Any) -> tuple[State, Outcome]:
-    """Return the state of a run that begins at a state of an orbit with poses, and the outcome."""
-    return stepper.start(states.as_start())
-
-
 def _with_step(stepper: AbstractStepper[Any], states: Any) -> Any:
     """Return a state with the step that begins there."""
-    state, outcome = begun_at(stepper, states)
+    state, outcome = stepper.start(states.as_start())
     split = np.split(state[: stepper.width], np.cumsum(list(stepper.columns.values()))[:-1])
     rows = tuple(row[None] for row in split)
     return states.with_step(stepper.orbit(rows, 0, 1, stepper.settle(rows)), outcome)
@@ -125,18 +112,6 @@ cusp = Event(_forward_speed, name="cusp")
 r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its path in the plane has a cusp there."""
 
 
-def flow_in_coordinates(solve: Callable[[], Any], by_name: dict[str, Event]) -> Any:
-    """Solve the equations of a system in coordinates; return the orbit with what was found."""
-    try:
-        orbit, where = solve(), ""
-    except OutcomeError as early:
-        orbit, where = cast(AbstractOrbit, early.orbit), early.where
-    result = flow_with_events(by_name, orbit, cast(Any, orbit).solution.looks())
-    if result.outcome != Outcome.successful:
-        raise OutcomeError(result.outcome, where or f"Flow after time {result.time[-1]:g}", result)
-    return result
-
-
 def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarray, "steps"]) -> Any:
     """Return the states of a flow up to the event that ends it, with what was found.
 
@@ -153,9 +128,8 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     watch, last = search(Watch(events, between_times(looks, forward)), looks)
     outcome, log = Outcome.successful if watch.stopped_by else looks.outcome, watch.log()
     count = int(np.searchsorted(outputs, forward * looks.time[last - 1], "right"))
-    parts = tuple(of_requested(part, outputs, forward) for part in log.found)
-    events_there = EventLog(log.names, parts, log.stopped_by)
-    return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=events_there)
+    log = of_requested(log, outputs, forward)
+    return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=log)
 
 
 def between_times(looks: AbstractOrbit, forward: float) -> Part:
@@ -171,9 +145,11 @@ def between_times(looks: AbstractOrbit, forward: float) -> Part:
     return between
 
 
-def of_requested(crossings: Crossings, outputs: np.ndarray, forward: float, **fields: Any) -> Crossings:
+def of_requested(log: EventLog, outputs: np.ndarray, forward: float, **fields: Any) -> EventLog:
     """Return crossings with the numbers of the requested times before them, and other fields of their states."""
-    times = forward * crossings.time
-    step = np.searchsorted(outputs, times, "right") - 1
-    gaps = np.append(np.diff(outputs), np.inf)
-    return crossings.of_steps(step, (times - outputs[step]) / gaps[step], **fields)
+    gaps, each = np.append(np.diff(outputs), np.inf), []
+    for crossings in log.found:
+        times = forward * crossings.time
+        step = np.searchsorted(outputs, times, "right") - 1
+        each.append(crossings.of_steps(step, (times - outputs[step]) / gaps[step], **fields))
+    return dataclasses.replace(log, found=tuple(each))

@@ -12,19 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import call, check_result, numbers_of
-from nonholo.base.checks import (
-    array,
-    assign,
-    checked_name,
-    choice,
-    count,
-    error,
-    function,
-    instance,
-    is_name,
-    number,
-    shown,
-)
+from nonholo.base.checks import array, assign, checked_name, choice, count, error, function, is_name, number, shown
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences
@@ -98,17 +86,12 @@ class Impact:
         point = array("Impact(point=...)", place, normal.shape, "Pass as many numbers as the normal has.")
         assign(self, normal=normal, point=point)
 
-    @property
-    def has_plane(self) -> bool:
-        """Whether the normal is a spatial vector."""
-        return self.point is not None
-
     def check(self, where: str, states: AbstractOrbit) -> None:
         """Refuse a vector that is none of the space of a motion, and differences for a body without matrices."""
         group, system = states.group, states.system
         if self.normal is None and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
-        if self.has_plane:
+        if self.point is not None:
             size = states.body_velocity.shape[1] if group is None else group.point_size
             if len(self.point) != size or (group is None and self.point.any()):
                 got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
@@ -119,19 +102,17 @@ class Impact:
     def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
         place, dim = states.configuration[0], states.body_velocity.shape[1]
-        if self.has_plane and states.group is None:
-            return self.normal
-        if self.has_plane:
-            return Gravity(self.normal, self.point).covector(states.group, place)
+        if self.point is not None:
+            group = states.group
+            return self.normal if group is None else Gravity(self.normal, self.point).covector(group, place)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
         return _slope_of(gap, states)
 
     def lowest_bounce(self, gap: Any, states: AbstractOrbit) -> float:
         """Return the height in a gap, as its rounding lets it be seen, from which on a bounce is one."""
-        if states.system.is_wide:
-            return 0.0
-        return _LOW * float(np.abs(self.covector(gap, states)) @ _reach(states))
+        is_wide = states.system.is_wide
+        return 0.0 if is_wide else _LOW * float(np.abs(self.covector(gap, states)) @ _reach(states))
 
     def struck(self, where: str, gap: Any, states: AbstractOrbit, direction: int) -> Any:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.
@@ -142,18 +123,13 @@ class Impact:
             states: One state, at the wall.
             direction: That of the gap on the way through the wall.
         """
-        after = states.reflection(self.covector(gap, states), self.restitution, direction)
-        if after is None:
-            self._check_direction(where, gap, states)
-        return after
-
-    def _check_direction(self, where: str, gap: Any, states: AbstractOrbit) -> None:
-        """Refuse a normal that points where the gap falls; a motion along the wall may only graze it."""
-        if self.normal is None or states.system.is_wide:
-            return
-        if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
+        normal = self.covector(gap, states)
+        after, is_own = states.reflection(normal, self.restitution, direction), self.normal is not None
+        # The motion may graze the wall, or the normal points where the gap falls.
+        if after is None and is_own and not states.system.is_wide and normal @ _slope_of(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."
             raise error(where, "have a normal in whose direction the function grows", got, remedy)
+        return after
 
 
 def _slope_of(gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
@@ -247,8 +223,8 @@ class Event:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):
             count("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
-        if self.reset is not None:
-            instance("Event(reset=...)", self.reset, Impact, "be an impact", "Pass Impact(), or leave it out.")
+        if not isinstance(self.reset, Impact | None):
+            raise error("Event(reset=...)", "be an impact", shown(self.reset), "Pass Impact(), or leave it out.")
 
     @property
     def last(self) -> float:
@@ -264,7 +240,8 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
     by_name: dict[str, Event] = {}
     for position, each in enumerate(events):
         event = each if isinstance(each, Event) else Event(each)
-        name = event.name or _name_of(event.function, position)
+        own = getattr(event.function, "__name__", None)
+        name = event.name or (str(own) if is_name(own) else f"event {position}")
         if name in by_name:
             raise error(where, "have different names", f"{name!r} twice", "Pass Event(function, name=...).")
         by_name[name] = event
@@ -274,11 +251,6 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 def has_resets(events: dict[str, Event]) -> bool:
     """Return whether an event changes the motion."""
     return any(event.reset is not None for event in events.values())
-
-
-def _name_of(function: Callable[..., Any], position: int) -> str:
-    name = getattr(function, "__name__", None)
-    return str(name) if is_name(name) else f"event {position}"
 
 
 def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarray, "K"]:

@@ -1,26 +1,23 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
-import functools
 import importlib
-from typing import Any, NamedTuple, TypeAlias, overload
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flags, flow_times, flow_tolerances, is_moderate, within_memory
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances, within_memory
 from nonholo.base.progress import telling
-from nonholo.base.results import Outcome, conclude_flow
+from nonholo.base.results import conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
-from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
-from nonholo.simulation._event import Event, checked_events, has_resets
+from nonholo.simulation._contact import BodyFlights, flow_through_impacts
+from nonholo.simulation._crossings import check_resets, flow_with_events, refuse_resets
+from nonholo.simulation._event import checked_events, has_resets
 from nonholo.simulation._options import FEW
-from nonholo.simulation._search import values_of
+from nonholo.simulation._search import Events, values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
-FirstState: TypeAlias = tuple[np.ndarray, np.ndarray | None]
-"""The momentum at the first time and the pose, where one is solved for."""
 
 
 @overload
@@ -153,7 +150,7 @@ def flow(
                 refuse_resets("flow", by_name, "impacts of a flow without poses: reconstruct=False")
             flights = BodyFlights(system, method, tolerances)
             return _successful(task, *_flow_between_walls(task.opening(first), time, flights, by_name))
-        return _solve_flow(task, solver, first, by_name)
+        return _successful(task, *_solve_flow(task, solver, first, by_name))
 
 
 def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: Any) -> Any:
@@ -162,10 +159,12 @@ def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: A
     if events is None:
         return room.flow(system, **how)
     by_name = checked_events("flow", events)
-    if not has_resets(by_name):
-        return flow_in_coordinates(functools.partial(room.flow, system, **how), by_name)
     flights, time, opening = room.flights(system, **how)
-    orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    if has_resets(by_name):
+        orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    else:
+        flow = flights.solve(opening, time)
+        orbit = flow_with_events(by_name, flow, flow.solution.looks())
     return flights.successful(orbit, time)
 
 
@@ -177,33 +176,36 @@ class _Task(NamedTuple):
     tolerances: tuple[float, float]
     reconstruct: bool
 
-    def opening(self, first: FirstState) -> Orbit:
+    def opening(self, first: tuple[Any, Any]) -> Orbit:
         """Return the first state alone."""
         reduced, pose = first[0][None], None if first[1] is None else first[1][None]
         return Orbit(ContinuousFlow(self.system), self.time[:1], reduced, None, pose)
 
 
-def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
-    """Return the checked momentum at the first time and the pose, where one is solved for."""
+def _first_state(task: _Task, start: Start, with_poses: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return the momentum at the first time, which belongs to an admissible velocity, and the pose if it is needed."""
     if (numbers := len(task.time) * (task.system.rank + with_poses * task.system.group.pose_size)) > FEW:
         remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
         within_memory("flow(times=...)", 32.0 * numbers, remedy)
     first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
     reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demand is not None:
-        _check_momentum(first.demand, task.opening((reduced, pose)).momentum[0])
+        nearest = task.opening((reduced, pose)).momentum[0]
+        if (distance := np.linalg.norm(first.demand - nearest)) > _TOLERANCE * np.linalg.norm(nearest):
+            remedy = f"With the same components along the constraint it is {nearest.tolist()}."
+            raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)
     return reduced, pose
 
 
 def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
-    """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
+    """Return the flow from a checked start as far as it gets, with a pose where one is solved for, by the default."""
     solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     task = _Task(system, time, (rtol, 1.0), reconstruct)
-    return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)
+    return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)[0]
 
 
-def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str, Event] | None) -> Orbit:
-    """Return the orbit from a first state, with what events found."""
+def _solve_flow(task: _Task, solver: Solver, first: tuple[Any, Any], events: Events | None) -> tuple[Orbit, str]:
+    """Return the orbit from a first state, with what events found, and what a function said that ended it."""
     time, reconstruct = task.time, task.reconstruct
     if events is not None:
         values_of(events, task.opening(first if reconstruct else (first[0], None)))  # refused where there is none
@@ -211,18 +213,15 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str
     states = solution.states
     if not reconstruct:  # nor is the memory kept, of which the momenta are a part
         states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
-    count, is_finite = len(states.momenta), is_moderate(states.momenta)
-    is_finite = is_finite and (states.poses is None or is_moderate(states.poses, np.inf))
-    outcome = solution.outcome or (Outcome.successful if is_finite else Outcome.nonfinite)
-    motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
-    rows = {"reduced_momentum": states.momenta, "cayley": None, "canonical_pose": states.poses, "turned": states.turned}
-    orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome).on_group()
+    time = time[: len(states.momenta)]
+    motion, rows = ContinuousFlow(task.system, (time[0], time[-1]), solution.at), (states.momenta, None, states.poses)
+    orbit = Orbit(motion, time, *rows, solution.outcome, turned=states.turned).on_group()
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
-    return _successful(task, orbit, solution.fault)
+    return orbit, solution.fault
 
 
-def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
+def _flow_between_walls(opening: Any, time: np.ndarray, flights: Any, events: Events) -> tuple[Any, str]:
     """Return the orbit from a first state, with impacts, and what a function said that ended it."""
     if time[-1] < time[0]:
         refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")
@@ -236,11 +235,3 @@ def _successful(task: _Task, orbit: Orbit, message: str) -> Orbit:
     forces = task.system.forces
     acting = "" if forces is None else f" under {forces.names}"
     return conclude_flow(orbit, task.time, task.tolerances, acting, message)
-
-
-def _check_momentum(momentum: Any, nearest: np.ndarray) -> None:
-    """Refuse a full momentum that no admissible velocity has."""
-    distance = np.linalg.norm(np.asarray(momentum) - nearest) if np.shape(momentum) == nearest.shape else 0.0
-    if distance > _TOLERANCE * np.linalg.norm(nearest):
-        remedy = f"With the same components along the constraint it is {nearest.tolist()}."
-        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)

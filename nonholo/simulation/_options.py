@@ -4,15 +4,8 @@ import dataclasses
 from typing import Any
 
 from nonholo.base.checks import choice, error, flags, shown, step_counts, within_memory
-from nonholo.discrete import (
-    BranchRule,
-    Discretization,
-    RuleStepper,
-    as_discretization,
-    checked_rule,
-    has_frame,
-    refuse_composition,
-)
+from nonholo.discrete import Discretization, as_discretization, refuse_composition
+from nonholo.discrete.branching import BranchRule, RuleStepper, checked_rule, has_frame
 from nonholo.orbit import AbstractStepper
 from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._run import Run
@@ -41,27 +34,18 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
 
 
 def checked_run(
-    owner: str,
-    discrete: Any,
-    steps: Any,
-    save_every: Any,
-    branch: BranchRule,
-    backend: str,
-    reconstruct: bool,
-    events: Any,
-    throw: bool,
-    progress: bool,
+    owner: str, discrete: Any, steps: Any, save_every: Any, branch: BranchRule, backend: str, events: Any, **how: bool
 ) -> Run:
-    """Return a run with checked options, for any start."""
-    flags(owner, reconstruct=reconstruct, throw=throw, progress=progress)
-    count, every = step_counts(owner, steps, save_every)
-    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct, owner=owner)
+    """Return a run with checked options, for any start; `how` are those that are True or False."""
+    flags(owner, **how)
+    (count, every), with_poses = step_counts(owner, steps, save_every), how["reconstruct"]
+    stepper = stepper_of(discrete, branch, backend, with_poses=with_poses, owner=owner)
     if not isinstance(discrete, Discretization):
-        others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
+        others = {"branch": (branch, "principal"), "reconstruct": (with_poses, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    if discrete.forces is not None:
-        check_forces(owner, discrete, count)
-    return Run(stepper, count, every, None if events is None else watch_for(owner, stepper, events), throw, progress)
+    check_forces(owner, discrete, count)
+    watch = None if events is None else watch_for(owner, stepper, events)
+    return Run(stepper, count, every, watch, how["throw"], how["progress"])
 
 
 def stepper_of(

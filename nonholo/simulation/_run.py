@@ -1,7 +1,6 @@
 """The one loop over the steps of every kind of run, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
-import functools
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, TypeAlias
@@ -10,11 +9,11 @@ import numpy as np
 
 from nonholo.base.checks import count, error, within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
+from nonholo.base.results import OUTCOMES, Outcome, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
-from nonholo.simulation._crossings import begun_at, check_resets
+from nonholo.simulation._crossings import check_resets
 from nonholo.simulation._search import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
@@ -27,8 +26,6 @@ _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are dou
 Stepper: TypeAlias = AbstractStepper[Any]
 Report: TypeAlias = Callable[[int, int], object]
 """Takes how many steps are done, and of how many."""
-Searched: TypeAlias = tuple[State, int, int, Watch]
-"""The state after the last good step, how many steps were good, the outcome, and what was seen."""
 
 
 class Run(NamedTuple):
@@ -71,14 +68,6 @@ class Reached(NamedTuple):
     def is_last(self) -> bool:
         """Whether the run ended here: it cannot continue, or an event ended it."""
         return self.outcome != Outcome.successful or (self.watch is not None and self.watch.stopped_by is not None)
-
-
-class Block(NamedTuple):
-    """A block of a run: its number, its orbit (None if it was known), and how the run stands at its end."""
-
-    number: int
-    orbit: Any
-    standing: Reached
 
 
 def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
@@ -149,7 +138,11 @@ class _Table:
         most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)
         if self.fine:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
-            self._reserve(1 + (step - self.begin + count) // self.every)
+            if (places := 1 + (step - self.begin + count) // self.every) > (have := len(self.rows[0])):
+                longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
+                for column, old in zip(longer, self.rows, strict=True):
+                    column[:have] = old
+                self.rows = longer
         elif past == 0 and most >= self.every:
             each, count = self.every, min(most // self.every, 1 + _NEAR // self.stepper.width)
         else:
@@ -158,14 +151,6 @@ class _Table:
             return each * count, each, empty_rows(self.stepper, 1 + count)
         first = (step - self.begin) // each
         return each * count, each, part_of(self.rows, first, first + count + 1)
-
-    def _reserve(self, places: int) -> None:
-        """Have at least this many places."""
-        if places > (have := len(self.rows[0])):
-            longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
-            for column, old in zip(longer, self.rows, strict=True):
-                column[:have] = old
-            self.rows = longer
 
     def take(self, room: Rows, step: int, good: int, each: int) -> None:
         """Keep the saved states among the rows of a call, if they are not in place; settle them while they are near."""
@@ -180,19 +165,20 @@ class _Table:
 
 
 def blocks(
-    run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] | None = None
-) -> Iterator[Block]:
-    """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
-    standing = start
+    run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] = lambda _: None
+) -> Iterator[tuple[int, Any, Reached]]:
+    """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed.
+
+    Each is its number, its orbit (None if it was known), and how the run stands at its end.
+    """
     for number in range(plan.blocks):
-        orbit, there = None, None if look_up is None else look_up(number)
+        orbit, there = None, look_up(number)
         if there is None:
-            orbit, there = compute_block(run.stepper, plan, number, standing, report)
+            orbit, there = compute_block(run.stepper, plan, number, start, report)
         else:
             report(there.step, plan.steps)
-        standing = there
-        yield Block(number, orbit, standing)
-        if standing.is_last:
+        yield number, orbit, there
+        if (start := there).is_last:
             return
 
 
@@ -221,8 +207,12 @@ def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, rep
     return _orbit_of(stepper, table, plan, standing), standing
 
 
-def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Searched:
-    """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
+def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Any:
+    """Take single steps up to an event that ends the motion, or through the step with an impact; search them.
+
+    Returns:
+        The state after the last good step, how many steps were good, the outcome, and what was seen.
+    """
     step, steps = stretch
     if watch.is_at_wall:
         write_first(state, room)
@@ -237,12 +227,12 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
     return state, states - 1, code, watch
 
 
-def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Searched:
-    """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
+def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Any:
+    """Do the same with the step from a node at a wall, or what is left of that with the impact that was seen last."""
     node, good = state.copy(), 0 if watch.reset_by is None else watch.cut - step
     keep_row(node, room, good)
-    begin = functools.partial(begun_at, stepper)
-    after, watch, outcome = after_contact(begin, watch, orbit_at(stepper, node, step + good))
+    there = orbit_at(stepper, node, step + good)
+    after, watch, outcome = after_contact(lambda states: stepper.start(states.as_start()), watch, there)
     if after is None:
         return node, good, outcome, watch
     write_first(after, part_of(room, good + 1, good + 2))
@@ -309,12 +299,9 @@ def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
 def _orbits(run: Run, start: Reached, rows: int) -> Iterator[Any]:
     with progress_bar("steps", run.progress) as report:
         for _, orbit, standing in blocks(run, run.plan(rows), start, report):
-            raises = run.throw and orbit.outcome != Outcome.successful
-            if len(orbit) or not raises:  # an event may end the motion before the first state of a block
+            if len(orbit) or not (run.throw and orbit.outcome):  # an event may end it before the first state of a block
                 yield orbit
-            if raises:
-                where = f"Step {standing.step + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
-                raise OutcomeError(orbit.outcome, where, orbit)
+            run.finish(orbit, standing.step)
 
 
 def rows_of_block(where: str, run: Run, block_steps: int | None) -> int:

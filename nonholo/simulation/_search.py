@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import operator
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,8 +16,6 @@ Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
 
 Events = dict[str, Event]
-Values = Float[np.ndarray, "E K"]
-"""Of each event, a row, at each state."""
 _PIECE, _NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at once: states, numbers in an array
 _ROUNDING = 2.0**-54  # of a step, beside its end
 _TOUCH = 5e-324  # the value of an event at a wall, with the sign of the side where the body is
@@ -97,7 +95,7 @@ class Watch:
         heading = None if there.turned is None else there.turned[-1]
         return dataclasses.replace(self, values=values, heading=heading, sliding=False)
 
-    def values_there(self, states: Any) -> Values:
+    def values_there(self, states: Any) -> Float[np.ndarray, "E K"]:
         """Return the values of all events at states; along a wall the one before."""
         values = values_of(self.events, states)
         return values if self.values is None else np.where(self.sliding, self.values, values)
@@ -167,14 +165,10 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         sides = [-event.direction * (event.reset is not None) for event in watch.events.values()]
         values[:, :1] += _TOUCH * np.reshape(sides, (-1, 1)) * (values[:, :1] == 0)
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
-    places = find_crossings(watch.events, stretch, values, owner, left, watch.part)
-    first, count = int(places.stopper[0]), len(stretch)
-    if first >= 0:
-        count = 1 + int(places.end[0] - stretch.step[0])
-    crossings = tuple(
-        _crossings_of(watch, first, position, stretch, row, at)
-        for position, (row, at) in enumerate(zip(values, places.at, strict=True))
-    )
+    places, (first,), (end,) = find_crossings(watch.events, stretch, values, owner, left, watch.part)
+    count = len(stretch) if first < 0 else 1 + int(end - stretch.step[0])
+    each = enumerate(zip(values, places, strict=True))
+    crossings = tuple(_crossings_of(watch, first, position, stretch, row, at) for position, (row, at) in each)
     last = values[:, count - 1 : count] if count else None
     heading = None if stretch.turned is None else float(stretch.turned[count - 1])
     new_watch = dataclasses.replace(watch.after_stretch(crossings), values=last, heading=heading)
@@ -200,30 +194,16 @@ def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np
     return dataclasses.replace(crossings, after=crossings.states if after is None else after)
 
 
-def values_of(events: Events, states: AbstractOrbit) -> Values:
-    """Return the values of all events at states."""
+def values_of(events: Events, states: AbstractOrbit) -> Float[np.ndarray, "E K"]:
+    """Return the values of all events, a row for each, at states."""
     values = [values_at(name, event, states) if len(states) else np.empty(0) for name, event in events.items()]
     return np.array(values).reshape(len(events), len(states))
 
 
-class Crossed(NamedTuple):
-    """Where some motions cross, up to their ends.
-
-    Attributes:
-        at: For every event the states before its crossings.
-        stopper: The position of the event that ends each motion, -1 where none does.
-        end: The step with which it ends.
-    """
-
-    at: list[Int[np.ndarray, "C"]]
-    stopper: Int[np.ndarray, "M"]
-    end: Int[np.ndarray, "M"]
-
-
 def find_crossings(
-    events: Events, states: AbstractOrbit, values: Values, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
-) -> Crossed:
-    """Return where motions cross, none of it after a crossing that ends one.
+    events: Events, states: AbstractOrbit, values: np.ndarray, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
+) -> tuple[list[Int[np.ndarray, "C"]], Int[np.ndarray, "M"], Int[np.ndarray, "M"]]:
+    """Find where motions cross, none of it after a crossing that ends one.
 
     Args:
         events: The events, by name.
@@ -232,11 +212,15 @@ def find_crossings(
         owner: The motion of each state.
         left: The number of further crossings of every event that ends a motion; infinite if none does.
         part: Gives the states after parts of steps.
+
+    Returns:
+        For every event the states before its crossings; of each motion the position of the event that ends it, -1 where
+        none does, and the step with which it ends.
     """
     is_same, count = owner[1:] == owner[:-1], left.shape[1]
     at = [np.flatnonzero(changes(event, row) & is_same) for event, row in zip(events.values(), values, strict=True)]
     ending = [x[_rank(owner[x]) == most[owner[x]] - 1] for x, most in zip(at, left, strict=True)]
-    places = Crossed(at, np.full(count, -1), np.zeros(count, dtype=int))
+    places = at, np.full(count, -1), np.zeros(count, dtype=int)
     return _cut_ends(events, states, values, owner, places, ending, part) if any(map(len, ending)) else places
 
 
@@ -246,26 +230,24 @@ def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
 
 
 def _cut_ends(
-    events: Events, states: AbstractOrbit, values: Values, owner: np.ndarray, places: Crossed, ending: Any, part: Part
-) -> Crossed:
+    events: Events, states: Any, values: np.ndarray, owner: np.ndarray, places: Any, ending: Any, part: Part
+) -> Any:
     """Leave out crossings after those that end a motion, by where they are in its last step."""
-    _, stopper, end = places
+    each_at, stopper, end = places
     limit, moment = np.full(len(end), len(owner)), np.full(len(end), np.inf)
     for at in ending:
         np.minimum.at(limit, owner[at], at)
-    early = [at[at <= limit[owner[at]]] for at in places.at]
+    early = [at[at <= limit[owner[at]]] for at in each_at]
     within = [at[at == limit[owner[at]]] for at in early]
-    crossings = [
-        locate(name, event, states, row, at, part)
-        for (name, event), row, at in zip(events.items(), values, within, strict=True)
-    ]
+    each = zip(events.items(), values, within, strict=True)
+    crossings = [locate(name, event, states, row, at, part) for (name, event), row, at in each]
     moments = [each.step - states.step[at] + each.fraction for each, at in zip(crossings, within, strict=True)]
     for event, (at, past) in enumerate(zip(within, moments, strict=True)):
         ends = np.isin(at, ending[event]) & (past < moment[owner[at]])
         who = owner[at[ends]]
         moment[who], stopper[who], end[who] = past[ends], event, crossings[event].step[ends]
     late = [at[past > moment[owner[at]]] for at, past in zip(within, moments, strict=True)]
-    return Crossed([np.setdiff1d(at, out) for at, out in zip(early, late, strict=True)], stopper, end)
+    return [np.setdiff1d(at, out) for at, out in zip(early, late, strict=True)], stopper, end
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from nonholo.base.checks import checked_path, error, shown
+from nonholo.base.checks import checked_path, refuse_given
 from nonholo.discrete import BranchRule
 from nonholo.orbit import DiscreteMotion, OrbitT
 from nonholo.simulation._options import FEW, checked_run, refuse_too_large
@@ -99,12 +99,14 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
-    run = checked_run("simulate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
+    how = {"reconstruct": reconstruct, "throw": throw, "progress": progress}
+    run = checked_run("simulate", discrete, steps, save_every, branch, backend, events, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
-    if store is None and (checkpoint_every is not None or scenario is not None):
-        _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
+    if store is None:
+        of_stores = {"checkpoint_every": (checkpoint_every, None), "scenario": (scenario, None)}
+        refuse_given("simulate", "come with a store", "Pass store='run.zarr' too, or leave it out.", **of_stores)
     if store is not None or run.watch is None:  # an event may stop a run in memory long before
         states = 1 if store is not None else 1 + run.steps // run.every
         if states * run.stepper.width > FEW:
@@ -113,14 +115,6 @@ def simulate(
     if store is None:
         return run.finish(*run_to_end(run, first, whole=True))
     return into_store(run, first, checked_path("simulate(store=...)", store), checkpoint_every, scenario)
-
-
-def _refuse_without_store(**arguments: Any) -> None:
-    """Refuse what only a store can keep."""
-    for name, value in arguments.items():
-        if value is not None:
-            got, remedy = f"{shown(value)} without a store", "Pass store='run.zarr' too, or leave it out."
-            raise error(f"simulate({name}=...)", "come with a store", got, remedy)
 
 
 def iterate(
@@ -179,7 +173,8 @@ def iterate(
         >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
         [400, 400, 201]
     """
-    run = checked_run("iterate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
+    how = {"reconstruct": reconstruct, "throw": throw, "progress": progress}
+    run = checked_run("iterate", discrete, steps, save_every, branch, backend, events, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)

@@ -41,31 +41,28 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     there, events = dataclasses.replace(orbit_at(run.stepper, start.state, 0), save_every=run.every), None
     if start.watch is not None:
         there, events = dataclasses.replace(there, events=start.watch.log()), descriptions(start.watch.events)
-    remedy = "Raise save_every to keep fewer states."
-    numbers = 1 + run.stepper.width
-    within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
+    size = 8.0 * (1 + run.steps // run.every) * (1 + run.stepper.width)
+    within_disk("simulate(store=...)", size, path, "Raise save_every to keep fewer states.")
     stream = io.orbits.create_stream(path, there, plan, _checkpoint(start), events, scenario)
     with io.places.write_lock(stream.path):
         return continue_run(run, stream)
 
 
 def continue_run(run: Run, stream: "Stream") -> Any:
-    """Compute what a locked store lacks, block after block, and return the orbit."""
+    """Compute what a locked store lacks, block after block; return the orbit, or its last block if it fills memory."""
     stream.prepare()
-    _warn_of_other_versions(stream)
+    others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
+    if others and not stream.is_finished:
+        message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
+        warnings.warn(message, RuntimeWarning, stacklevel=3)
     with io.orbits.reporting_how_to_resume(
         stream.path, "The run", lambda: f"step {stream.steps_done()} of {stream.plan.steps}"
     ):
         end = _complete(run, stream)
-    return run.finish(_load(run, stream, end), end.done)
-
-
-def _warn_of_other_versions(stream: "Stream") -> None:
-    """Warn if what is still to compute may differ in its last bits from a run with the versions of the store."""
-    others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
-    if others and not stream.is_finished:
-        message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
-        warnings.warn(message, RuntimeWarning, stacklevel=4)
+    states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
+    if states * (2 + run.stepper.width) <= _LOADED:
+        return run.finish(io.load_orbit(stream.path, discrete=run.stepper.motion), end.done)
+    return run.finish(io.orbits.load_states(stream.path, run.stepper.motion, last=True), end.done)
 
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:
@@ -112,14 +109,6 @@ def _first(stream: "Stream") -> Checkpoint:
     except io.blocks.DamagedError as flaw:
         remedy = "The first state is lost: run it again."
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
-
-
-def _load(run: Run, stream: "Stream", end: Checkpoint) -> Any:
-    """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
-    if states * (2 + run.stepper.width) <= _LOADED:
-        return io.load_orbit(stream.path, discrete=run.stepper.motion)
-    return io.orbits.load_states(stream.path, run.stepper.motion, last=True)
 
 
 def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
@@ -297,25 +286,21 @@ def extend(
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
     with io.places.write_lock(stream.path):
-        _refuse_ended(io.metadata.read_attributes(stream.path))
-        numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
-        size = 8.0 * (steps // run.every) * numbers
-        within_disk("extend(steps=...)", size, stream.path, remedy)
+        attributes = io.metadata.read_attributes(stream.path)
+        outcome, event = attributes.get("outcome", Outcome.successful.name), attributes.get("stopped_by")
+        if event is not None:
+            got = f"one that the event {event!r} ended"
+            remedy = "Run it again without `stop`, or with a later one, to go past it."
+            raise error("extend(store=...)", "be a run that can continue", got, remedy)
+        if outcome != Outcome.successful.name:
+            remedy = f"{Outcome[outcome].message} More steps from there do not exist."
+            raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
+        size = 8.0 * (steps // run.every) * (1 + run.stepper.width)
+        within_disk("extend(steps=...)", size, stream.path, "Pass fewer steps.")
         longer = io.orbits.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
         return continue_run(run._replace(steps=longer.plan.steps), longer)
-
-
-def _refuse_ended(attributes: dict[str, Any]) -> None:
-    """Refuse a run that came to its end before its last step."""
-    outcome, event = attributes.get("outcome", Outcome.successful.name), attributes.get("stopped_by")
-    if event is not None:
-        remedy = "Run it again without `stop`, or with a later one, to go past it."
-        raise error("extend(store=...)", "be a run that can continue", f"one that the event {event!r} ended", remedy)
-    if outcome != Outcome.successful.name:
-        remedy = f"{Outcome[outcome].message} More steps from there do not exist."
-        raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
 def _open(owner: str, store: Any, discrete: Any, events: Any, *, throw: bool, progress: bool) -> tuple["Stream", Run]:

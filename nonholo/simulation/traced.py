@@ -131,11 +131,9 @@ def roll(
         as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
         run, arguments = _roll_out, _on_group
     if policy is not None:
-        function(f"{owner}(policy=...)", policy, "time", "state")
+        function(where := f"{owner}(policy=...)", policy, "time", "state")
         if controls is not None:
-            raise error(
-                f"{owner}(policy=...)", "be left out beside controls", "both", "Add the controls in the policy."
-            )
+            raise error(where, "be left out beside controls", "both", "Add the controls in the policy.")
     drive = controls if policy is None else policy
     return _call(run, sizes, *arguments(discrete, Start.of(owner, **start), sizes, drive))
 
@@ -261,16 +259,13 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:
-    """Return the value of the start and the pose; of traced ones the shapes are checked."""
+    """Return the value of the start and the pose; of traced ones the shapes alone are checked."""
     system, group = discrete.system, discrete.system.group
     if not any(map(is_traced, (start.value, start.configuration, *jax.tree.leaves(discrete)))):
-        g = start.pose(group)
-        start.momentum(system, g)
-        return array(start.where, start.value, shape_of(start.value)), g
+        start.momentum(system, start.pose(group))
+    where, remedy = f"{start.owner}(configuration=...)", f"Pass an element of {group} as a matrix."
     pose = group.identity if start.configuration is None else start.configuration
-    g = array(
-        f"{start.owner}(configuration=...)", pose, group.identity.shape, f"Pass an element of {group} as a matrix."
-    )
+    g = array(where, pose, group.identity.shape, remedy)
     is_along = start.name == "momentum" and shape_of(start.value) == (system.rank,)
     along = is_along or start.name == "restricted_velocity"
     return array(start.where, start.value, (system.rank if along else group.dim,)), g

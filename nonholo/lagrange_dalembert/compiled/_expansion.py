@@ -18,21 +18,11 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
-from nonholo.lagrange_dalembert.compiled._scalars import (
-    DOUBLE,
-    OPERATIONS,
-    Formulas,
-    Scalar,
-    Text,
-    UntranslatableError,
-    operations_between,
-    reference,
-)
+from nonholo.lagrange_dalembert.compiled import _scalars as scalars
+from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, Formulas, Scalar
 
 LINEAR = {"add", "sub", "neg"}
 BILINEAR = {"mul", "div"}
-Rates = list[tuple[Scalar, Scalar]]
-"""Arguments a and g in the rate of a function, the sum of a' g."""
 
 
 def _over(f: Formulas, above: float, below: Scalar) -> Scalar:
@@ -66,8 +56,8 @@ _SLOPES: dict[str, Callable[[Formulas, Scalar, Scalar], Scalar]] = {
 }
 
 
-def rates_of(f: Formulas, y: Scalar) -> Rates:
-    """Return how the result of a function moves with its arguments.
+def rates_of(f: Formulas, y: Scalar) -> list[tuple[Scalar, Scalar]]:
+    """Return how the result of a function moves with its arguments: those a and g in its rate, the sum of a' g.
 
     Raises:
         UntranslatableError: It has kinks, as a choice, a comparison and a rounding do.
@@ -84,7 +74,7 @@ def rates_of(f: Formulas, y: Scalar) -> Rates:
         square = f("add", f("mul", above, above), f("mul", right, right))
         rates = [(above, f("div", right, square)), (right, f("neg", f("div", above, square)))]
     else:
-        raise UntranslatableError(y.operation)
+        raise scalars.UntranslatableError(y.operation)
     return [(x, slope) for x, slope in rates if x.value is None]
 
 
@@ -106,7 +96,7 @@ class Elimination:
                 if i < j:
                     lower.append(self._quotient(products[i], self.pivots[i]))
             if products[j].value == 0:
-                raise UntranslatableError("a pivot is zero")
+                raise scalars.UntranslatableError("a pivot is zero")
             self.lower.append(lower)
             self.pivots.append(products[j])
 
@@ -161,7 +151,7 @@ class Expansion:
     """
 
     def __init__(self, f: Formulas, inputs: list[Scalar], rates: list[Scalar]) -> None:
-        self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Rates]()
+        self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Any]()
         self.order = self._order_of(f, [each for each in rates if each.value is None])
         moving = [a for pairs in self.functions.values() for a, _ in pairs]
         self.places = {each: i for i, each in enumerate([*inputs, *self.order])}
@@ -170,7 +160,7 @@ class Expansion:
 
     def _order_of(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
         """Return the operations that results need, and note the rates of functions among them."""
-        order = operations_between(results, self.inputs)
+        order = scalars.operations_between(results, self.inputs)
         new = [x for x in order if x.operation not in LINEAR | BILINEAR and x not in self.functions]
         if not new:
             return order
@@ -281,8 +271,8 @@ class Expansion:
     def _write_value(self, x: Scalar, target: Any, *rest: Any) -> None:
         """Write the coefficient of order 0: the value."""
         values = [y if y.type == DOUBLE else self._of(y, self.first) for y in rest[: len(x.arguments)]]
-        text = OPERATIONS[x.operation].emit(self.builder.module, *map(reference, values))
-        self.builder.store(Text(self.builder, DOUBLE, text), self.builder.gep(self.first, [target]))
+        text = scalars.OPERATIONS[x.operation].emit(self.builder.module, *map(scalars.reference, values))
+        self.builder.store(scalars.Text(self.builder, DOUBLE, text), self.builder.gep(self.first, [target]))
 
     def _write_states(self) -> None:
         """Write the coefficients of order k of the state."""

@@ -65,9 +65,8 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
     def write(module: ir.Module) -> int:
         whole = program(at, place, (n,), *map(np.shape, family.parameters.values()), ())
         f, parts = whole.formulas, iter(whole.results)
-        mass, A, force, off, rate, momentum, energy, residual, away, leaving = (
-            array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
-        )
+        arrays = (array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes)
+        mass, A, force, off, rate, momentum, energy, residual, away, leaving = arrays
         matrix = bordered_elimination(f, mass, A)
         zero, acceleration = f.constant(0.0), matrix.solution([*force, *off])
         across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (residual, away, leaving))
@@ -178,19 +177,10 @@ def _blocks(system: Any, x: np.ndarray, masses: Float[np.ndarray, "n"], still: i
 
 def _equations(code: Formulation, blocks: tuple[int, ...]) -> Quadratic:
     """Return equations without quadratic terms, whose numbers are the room of the code."""
-    return _structure(blocks)._replace(factors=np.zeros((1, code.room)))
-
-
-@functools.lru_cache(maxsize=64)
-def _structure(blocks: tuple[int, ...]) -> Quadratic:
-    """Return what equations with these blocks have in common."""
-    size = len(blocks)
-    none = np.zeros(0, dtype=np.int64)
-    sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, 0))
-    ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(
-        np.zeros((0, 0)), *sparse, np.arange(size), np.array(blocks), np.zeros(1 + max(blocks), dtype=np.bool_), *ends
-    )
+    size, none = len(blocks), np.zeros((2, 0), dtype=np.int64)
+    sparse = none, np.zeros(size + 1, dtype=np.int64), none[0], np.zeros((1, code.room))
+    measures = np.arange(size), np.array(blocks), np.zeros(1 + max(blocks), dtype=np.bool_)
+    return Quadratic(np.zeros((0, 0)), *sparse, *measures, np.zeros(0), np.zeros((0, 0)), np.zeros(0))
 
 
 def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:

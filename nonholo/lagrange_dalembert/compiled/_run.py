@@ -4,6 +4,7 @@ The equations of a system become C functions, made of the definitions of this ro
 """
 
 import functools
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -52,15 +53,6 @@ class Values(NamedTuple):
     shapes: list[tuple[int, ...]]
 
 
-class Programs(NamedTuple):
-    """The functions of `CoordinateBody`, and how many numbers `settle` writes."""
-
-    arrive: Any
-    settle: Any
-    correct: Any
-    border: int
-
-
 def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int = 0) -> Program:
     """Translate a function of arrays with these shapes, the last ones of which vary.
 
@@ -82,13 +74,13 @@ def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
-def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> Programs | None:
+def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> tuple[Any, Any, Any, int] | None:
     """Return the compiled equations of a step of a family of systems, with places of a shape and n velocities.
 
     Or, at a node, those of the velocity that belongs to a momentum: then nothing moves on arrival.
 
     Returns:
-        None if JAX must solve them.
+        The functions of `CoordinateBody`, and how many numbers `settle` writes; None if JAX must solve them.
     """
     s = family.constraints
     equations_of = _newton.of_node if at_node else _newton.of_step
@@ -121,7 +113,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         code, border = code_of(family, ("step", at_node), write)
     except UntranslatableError:
         return None
-    return Programs(FUNCTION(code["arrive"]), FUNCTION(code["settle"]), FUNCTION(code["correct"]), border)
+    return FUNCTION(code["arrive"]), FUNCTION(code["settle"]), FUNCTION(code["correct"]), border
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
@@ -155,12 +147,13 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     code, place, n = programs(system.form, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
+    arrive, settle, correct, border = code
     size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.numbers_of_formulas)]
     departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
-    inputs, equations = np.zeros(code.border + size), np.zeros(size * size + 2 * size + 2)
+    inputs, equations = np.zeros(border + size), np.zeros(size * size + 2 * size + 2)
     rows = equations[:-2].reshape(size + 2, size)
-    parts = inputs[code.border :], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
-    return CoordinateBody(*code[:3], departure, arrival, inputs, *parts, place, n)
+    parts = inputs[border:], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
+    return CoordinateBody(arrive, settle, correct, departure, arrival, inputs, *parts, place, n)
 
 
 def set_out(system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
@@ -236,11 +229,8 @@ def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None
 
 def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
-    blocks, end = [], 0
-    for shape in shapes:
-        begin, end = end, end + math.prod(shape)
-        blocks.append(table[:, begin:end].reshape(len(table), *shape))
-    return blocks
+    spans = itertools.pairwise(itertools.accumulate(map(math.prod, shapes), initial=0))
+    return [table[:, begin:end].reshape(len(table), *shape) for (begin, end), shape in zip(spans, shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

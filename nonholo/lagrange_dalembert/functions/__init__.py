@@ -12,12 +12,12 @@ from nonholo.lagrange_dalembert.functions._system import (
     places,
     room,
 )
-from nonholo.lagrange_dalembert.functions._tables import LOOK_UP, ROWS, ForceTable
 from nonholo.lagrange_dalembert.functions._traced import (
-    Bound,
+    LOOK_UP,
+    ROWS,
+    ForceTable,
     checked_rows,
     checked_value,
-    count_of,
     takes_time,
     trace,
     with_parameters,

@@ -19,16 +19,7 @@ from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
 from nonholo.base.traced import call_in_blocks
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert.functions._tables import ROWS, ForceTable
-from nonholo.lagrange_dalembert.functions._traced import (
-    Bound,
-    Resistance,
-    checked_value,
-    count_of,
-    rows_of,
-    takes_time,
-    with_parameters,
-)
+from nonholo.lagrange_dalembert.functions import _traced as traced
 from nonholo.systems.forces import force_of, parts_of, slips_of, with_later_force, without_slips
 
 
@@ -45,10 +36,8 @@ class Parameters(Mapping[str, Any]):
         instance(where, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
         names = [checked_name(where, key, ("time_step",)) for key in numbers]
         self._numbers = {key: _valid_number(where, key, numbers[key]) for key in names}
-        self._key = tuple(
-            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
-            for key, value in self.items()
-        )
+        keys = ((key, np.shape(x), id(x) if is_traced(x) else np.asarray(x).tobytes()) for key, x in self.items())
+        self._key = tuple(keys)
 
     def __getitem__(self, name: str) -> Any:
         return self._numbers[name]
@@ -73,19 +62,13 @@ class Parameters(Mapping[str, Any]):
         """Their shapes."""
         return {key: jax.ShapeDtypeStruct(np.shape(value), float) for key, value in self.items()}
 
-    @property
-    def nothing(self) -> "Parameters":
-        """Zeros of the same names and shapes."""
-        return Parameters({key: np.zeros(np.shape(value)) for key, value in self.items()})
-
     def replace(self, where: str, numbers: Mapping[str, Any]) -> "Parameters":
         """Return them with other numbers of the same names and shapes."""
         for key in numbers.keys() - self.keys():
             near = difflib.get_close_matches(key, self, n=1)
             remedy = f"It has {', '.join(self)}." if self else "It has none: make it with parameters=..."
-            raise error(
-                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
-            )
+            remedy = f"Did you mean {near[0]}?" if near else remedy
+            raise error(where, "name parameters of the system", shown(key), remedy)
         changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
         return Parameters(self._numbers | changes)
 
@@ -136,13 +119,13 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         if not contacts:
             return self.holding
         rows = np.flatnonzero(~np.concatenate([each.rows for each in contacts]).any(axis=0))
-        forms = rows_of(self.constraint_forms, rows) if len(rows) else None
+        forms = traced.rows_of(self.constraint_forms, rows) if len(rows) else None
         moves = self.constraint_velocities
-        velocities = {"constraint_velocities": rows_of(moves, rows)} if moves else {}  # of no rows: time stays
+        velocities = {"constraint_velocities": traced.rows_of(moves, rows)} if moves else {}  # of no rows: time stays
         return dataclasses.replace(self.holding, constraint_forms=forms, **velocities)
 
     @functools.cached_property
-    def table(self) -> ForceTable | None:
+    def table(self) -> traced.ForceTable | None:
         """The forces of the steps, where they are given one by one."""
         return parts_of(self.force).get("table")
 
@@ -164,12 +147,12 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
     @functools.cached_property
     def constraints(self: Any) -> int:
         """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
-        return self.velocity_constraints + count_of(self.holonomic) + len(self.prescribed)
+        return self.velocity_constraints + traced.count_of(self.holonomic) + len(self.prescribed)
 
     @functools.cached_property
     def velocity_constraints(self: Any) -> int:
         """The number of constraint forms."""
-        return count_of(self.constraint_forms)
+        return traced.count_of(self.constraint_forms)
 
     @property
     def has_parts(self: Any) -> bool:
@@ -188,13 +171,13 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         where, parts, n = f"{type(self).__name__}(force=...)", parts_of(self.force), self.dimension
         if (friction := parts.pop("friction", None)) is not None:
             friction.check(n)
-            parts["function"] = Resistance(parts.get("function"), friction.matrix)
-        if "table" in parts and not isinstance(parts["table"], ForceTable):
+            parts["function"] = traced.Resistance(parts.get("function"), friction.matrix)
+        if "table" in parts and not isinstance(parts["table"], traced.ForceTable):
             remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-            parts["table"] = ForceTable.of(array(where, parts["table"], (None, n), remedy))
+            parts["table"] = traced.ForceTable.of(array(where, parts["table"], (None, n), remedy))
         if "function" in parts:
             arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
-            parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
+            parts["function"] = traced.checked_value(where, parts["function"], of, arguments, (n,), of)
         assign(self, force=force_of(parts))
 
     def _check_slips(self: Any, *others: Any) -> None:
@@ -218,7 +201,7 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
     def _with_force(self, force: Any) -> Any:
         """Return the force with another one, which may take parameters or do without; beside one a table alone."""
         if self.parameters and "function" in (parts := parts_of(force)):
-            force = force_of(parts | {"function": with_parameters(parts["function"], 3)})
+            force = force_of(parts | {"function": traced.with_parameters(parts["function"], 3)})
         return with_later_force(self, force)
 
     @property
@@ -229,7 +212,7 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
     def _time(self, name: str) -> tuple[Any, ...]:
         """Return the shape of the time if a function is called with it."""
         count = self.of_time.get(name, np.inf) + len(self._shapes_given)
-        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
+        return (jax.ShapeDtypeStruct((), float),) if traced.takes_time(getattr(self, name), count) else ()
 
     def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
         """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""
@@ -275,7 +258,8 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         """The system with zeros as parameters, which stands for all their numbers."""
         if not self.parameters:
             return self
-        family = self._with_fields(parameters=self.parameters.nothing)
+        zeros = Parameters({key: np.zeros(np.shape(value)) for key, value in self.parameters.items()})
+        family = self._with_fields(parameters=zeros)
         vars(family)["family"] = family
         return family
 
@@ -284,28 +268,25 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         """The family without rows of a table, which stands for all `numbers`: what programs are made of."""
         if self.table is None:
             return self.family
-        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": self.table.nothing}))
+        nothing = traced.ForceTable(np.zeros_like(self.table.rows[:1]))
+        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": nothing}))
         vars(form).update(family=form, form=form)
         return form
 
-    def bound(self, *numbers: Any) -> Self:
+    def bound(self: Any, *numbers: Any) -> Any:
         """Return the system without parameters whose functions have these numbers within, and a table these rows."""
         self._refuse_slips()
-        p = dict(zip(self.parameters, numbers, strict=False))
-        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p, *numbers[len(p) :]))
+        p, parts = dict(zip(self.parameters, numbers, strict=False)), parts_of(self.force)
+        parts |= {"function": traced.Bound(parts["function"], p)} if "function" in parts else {}
+        parts |= {"table": traced.ForceTable(*numbers[len(p) :])} if numbers[len(p) :] else {}
+        motions = tuple((index, traced.Bound(motion, p)) for index, motion in self.prescribed)
+        own = {name: getattr(self, name) for name in self.functions}
+        functions = {name: each and traced.Bound(each, p) for name, each in own.items()}
+        return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
 
     def discrete_map(self: Any, time_step: Any) -> systems.DiscretizationT:
         """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").MAPS[self.orbits](self, time_step)
-
-    def _bound_fields(self: Any, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
-        """Return the fields that are functions, with parameters within, and the force with rows of its table."""
-        own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
-        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
-        parts |= {"table": ForceTable(*rows)} if rows else {}
-        motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
-        functions = {name: each and Bound(each, p) for name, each in own.items()}
-        return functions | {"force": force_of(parts), "prescribed": motions}
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -336,10 +317,7 @@ SYSTEM = "a system in coordinates"
 
 @functools.cache
 def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
-    def call(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
-        return function(family.bound(*numbers), *arguments)
-
-    return jax.jit(call, static_argnums=0)
+    return jax.jit(lambda family, numbers, *arguments: function(family.bound(*numbers), *arguments), static_argnums=0)
 
 
 @functools.cache
@@ -389,4 +367,4 @@ def in_rows(function: Callable[..., Any], system: Any, *columns: np.ndarray | fl
 
 def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
     """Do the same with many rows, in blocks, for a function with several results."""
-    return call_in_blocks(functools.partial(in_rows, function, system), ROWS, *columns)
+    return call_in_blocks(functools.partial(in_rows, function, system), traced.ROWS, *columns)

@@ -88,10 +88,6 @@ def _add(total: jax.Array, error: jax.Array, term: jax.Array) -> tuple[jax.Array
 def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Correct guesses until all have converged or it takes too long; return which are certain."""
 
-    def is_unfinished(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
-        count, _, further = carry
-        return (count < kernels.CORRECTIONS) & further.any()
-
     def correct(carry: tuple[jax.Array, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array, jax.Array]:
         count, y, further = carry
         d = jnp.stack(kernels.correction(body, *m, *y))
@@ -99,5 +95,5 @@ def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array
         return count + 1, y, further & ~kernels.converged(*d, *y)
 
     begin = jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool)
-    _, y, further = jax.lax.while_loop(is_unfinished, correct, begin)
+    _, y, further = jax.lax.while_loop(lambda c: (c[0] < kernels.CORRECTIONS) & c[2].any(), correct, begin)
     return y, ~further & kernels.is_certain(body, *m, *y)

@@ -53,10 +53,9 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
 
 def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
     """Return all that an orbit tells."""
-    variables: dict[str, Any] = {
-        name: ((*_EACH, *axes), getattr(ensemble, name), labels)
-        for name, (axes, _, labels) in none.labeled_rows().items()
-    }
+    rows, variables = none.labeled_rows(), dict[str, Any]()
+    for name, (axes, _, labels) in rows.items():
+        variables[name] = (*_EACH, *axes), getattr(ensemble, name), labels
     if none.coordinates:
         return variables
     return io.datasets.with_own_axes(variables | io.datasets.posed(none.space, ensemble.configuration, "member"))

@@ -29,8 +29,6 @@ _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 Reduced: TypeAlias = np.ndarray | dict[str, np.ndarray]
 Options: TypeAlias = dict[str, Any]
-Work: TypeAlias = tuple[Any, Plan, tuple[int, ...]]
-"""A motion, what is done with every member, and how wide its columns are."""
 _WHERE = "ensemble(reduce=...)"
 _ONE = ""  # the name of an array that comes without one
 
@@ -146,8 +144,8 @@ def _refuse(what: str, **arguments: Any) -> None:
     refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **arguments)
 
 
-def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
-    """Return the motion of flows, their plan, and how wide their columns are."""
+def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of flows, what is done with every member, and how wide its columns are."""
     reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), of_flow["rtol"]
@@ -162,8 +160,8 @@ def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options)
     return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * with_poses)
 
 
-def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
-    """Return the motion of runs, their plan, and how wide their columns are."""
+def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Options) -> tuple[Any, Plan, tuple[int, ...]]:
+    """Return the motion of runs, what is done with every member, and how wide its columns are."""
     del starts
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
     if isinstance(discrete, AbstractCoordinateDiscretization):
@@ -177,8 +175,7 @@ def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Option
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
     stepper = stepper_of(discrete, branch, backend, with_poses=bool(reconstruct), owner="ensemble")
     check_forces("ensemble", discrete, steps)
-    watch = None if events is None else watch_for("ensemble", stepper, events)
-    by_name = None if watch is None else watch.events
+    by_name = None if events is None else watch_for("ensemble", stepper, events).events
     refuse_resets("ensemble", by_name or {}, "impacts of many members, whose steps are taken side by side")
     plan = Plan(steps, save_every, bool(reconstruct), branch, backend, by_name)
     return discrete, plan, tuple(stepper.columns.values())
@@ -202,8 +199,7 @@ def _check_momenta(members: Members, starts: First, plan: Plan) -> None:
     if wrong.any():
         member = int(np.argmax(wrong))
         remedy = f"With the same components along the constraint that of member {member} is {full[member].tolist()}."
-        got = f"{momenta[member].tolist()}"
-        raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
+        raise error("ensemble(momentum=...)", "belong to admissible velocities", f"{momenta[member].tolist()}", remedy)
 
 
 def _run_all(members: Members, starts: First, plan: Plan, width: int, reduce: Any, report: Report) -> Any:
@@ -234,19 +230,14 @@ def join_blocks(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
         arrays = result if isinstance(result, dict) else {_ONE: result}
         rows = {name: _check_rows(size, value) for name, value in arrays.items()}
         whole = whole or {name: np.empty((members, *value.shape[1:]), value.dtype) for name, value in rows.items()}
-        _check_same(whole, rows)
+        ours, first = ({name: value.shape[1:] for name, value in block.items()} for block in (rows, whole))
+        if ours != first:
+            raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
         for name, value in rows.items():
             whole[name] = whole[name].astype(np.result_type(whole[name], value), copy=False)
             whole[name][begin : begin + size] = value
         begin += size
     return whole.get(_ONE, whole)
-
-
-def _check_same(whole: dict[str, np.ndarray], rows: dict[str, np.ndarray]) -> None:
-    """Refuse a block with other names or shapes than the first one."""
-    ours, first = ({name: value.shape[1:] for name, value in block.items()} for block in (rows, whole))
-    if ours != first:
-        raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
 
 
 def _check_rows(size: int, result: object) -> np.ndarray:

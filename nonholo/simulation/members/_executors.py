@@ -5,7 +5,7 @@ import contextvars
 import dataclasses
 import functools
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any, NamedTuple, TypeAlias, cast
 
@@ -24,7 +24,7 @@ from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
-from nonholo.simulation.members._members import Members, ScalarMembers, are_others, inertias_of, refusal
+from nonholo.simulation.members._members import Members, ScalarMembers, are_others, inertias_of, naming
 from nonholo.simulation.members._result import Ensemble, log_of, stack_rows, watched_block
 from nonholo.systems import in_coordinates
 
@@ -104,17 +104,19 @@ def run_members(members: Members, starts: First, plan: Plan, report: Report = la
         plan: The plan of the run.
         report: Called with the number of members that are done.
     """
-    if plan.times is not None:
-        run = run_by_series if _has_series(members, plan) else run_one_by_one
-    else:
-        run = run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
-    return run(members, starts, plan, threads_to_use(), report)
+    threads = threads_to_use()
+    if plan.times is None and are_side_by_side(members, plan):  # events are sought in all steps
+        whole = plan if plan.events is None else plan._replace(every=1)
+        block = run_in_lanes(members, starts, whole, threads, report)
+        return block if plan.events is None else watched_block(plan.events, block, plan.every)
+    run = run_by_series if _has_series(members, plan) else run_one_by_one
+    return run(members, starts, plan, threads, report)
 
 
 def _has_series(members: Members, plan: Plan) -> bool:
     """Return whether flows are solved side by side; under forces those of one body are."""
-    system, times = members.discrete.system, cast(np.ndarray, plan.times)
-    if members.in_coordinates:
+    system, times = members.discrete.system, plan.times
+    if times is None or members.in_coordinates:
         return False
     alike = system.forces is None or not members.of_system
     return plan.with_poses and alike and has_series(system, times[-1] - times[0])
@@ -126,14 +128,7 @@ def are_side_by_side(members: Members, plan: Plan) -> bool:
 
 
 def run_in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
-    """Run members of a closed form side by side; events are sought in all of their steps."""
-    if plan.events is None:
-        return _in_lanes(members, starts, plan, threads, report)
-    return watched_block(plan.events, _in_lanes(members, starts, plan._replace(every=1), threads, report), plan.every)
-
-
-def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
-    """Run members of a closed form, 32 at a time, or by JAX."""
+    """Run members of a closed form side by side, 32 at a time, or by JAX, without their events."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, with_poses=plan.with_poses)
     lanes = _Lanes(scalar.body, scalar.fields, scalar.to_canonical)
@@ -153,10 +148,10 @@ def _in_lanes(members: Members, starts: First, plan: Plan, threads: int, report:
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
     columns |= {"canonical_pose": rows.poses} if plan.with_poses else {}
-    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.places)
+    batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], momenta, first)
     if starts.demand is not None:
         free, probe = starts._replace(demand=None), plan._replace(steps=1, every=1, with_poses=True)
-        _refuse_other_starts(batch, starts.demand, _in_lanes(members, free, probe, threads, lambda _: None))
+        _refuse_other_starts(batch, starts.demand, run_in_lanes(members, free, probe, threads, lambda _: None))
     return batch
 
 
@@ -228,26 +223,19 @@ def run_one_by_one(members: Members, starts: First, plan: Plan, threads: int, re
     count, orbits, good = len(members), {}, np.zeros(len(members), dtype=np.int64)
 
     def work(part: slice, _: np.ndarray) -> None:
-        orbits[part.start], good[part.start] = _alone(members, starts, plan, part.start)
+        with naming(member := part.start):
+            orbits[member], good[member] = _run_alone(members.of(member), starts.of(member), plan)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
     is_soon = stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE)
     threads = 0 if is_soon or members.in_coordinates else threads
     in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
-    each = [orbits[member] for member in range(count)]
+    each, (momenta, places, *_) = [orbits[member] for member in range(count)], starts.numbers
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stack_rows(each, plan.states) | _times(plan, count)
     branch = getattr(stepper, "branch", PRINCIPAL.name)
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.places, branch=branch)
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, momenta, places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
-
-
-def _alone(members: Members, starts: First, plan: Plan, member: int) -> tuple[Any, int]:
-    run = _run_alone if plan.times is None else _flow_alone
-    try:
-        return run(members.of(member), starts.of(member), plan)
-    except ValueError as failure:
-        raise refusal(member, failure) from failure
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
@@ -255,7 +243,11 @@ def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
 
 
 def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
-    """Return the states that one member keeps as an orbit, and its number of good steps."""
+    """Return the states that one member keeps as an orbit, and its number of good steps, of a flow of later times."""
+    if plan.times is not None:
+        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
+        orbit = flow(first, plan.times, plan.rtol, reconstruct=plan.with_poses)
+        return orbit, len(orbit) - 1
     stepper = _stepper_of(motion, plan)
     watch = None if plan.events is None else Watch(plan.events, motion.after_parts)
     run = Run(stepper, plan.steps, plan.every or plan.steps, watch, throw=False, progress=False)
@@ -265,27 +257,16 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
         return dataclasses.replace(cast(Any, early.orbit), outcome=early.outcome), 0
 
 
-def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
-    """Return the flow of one member up to its end, and the number of good times after the first."""
-    try:
-        times = cast(np.ndarray, plan.times)
-        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
-        orbit = flow(first, times, plan.rtol, reconstruct=plan.with_poses)
-    except OutcomeError as early:
-        orbit = cast(Any, early.orbit)
-    return orbit, len(orbit) - 1
-
-
 def run_by_series(members: Members, starts: First, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Solve for the flows of members side by side."""
-    count, pieces, time = len(members), {}, cast(np.ndarray, plan.times)
+    count, pieces, time, (momenta, poses) = len(members), {}, cast(np.ndarray, plan.times), starts.numbers
 
     def work(part: slice, stop: np.ndarray) -> None:
         options = time - time[0], plan.rtol, stop
-        inertias, places = inertias_of(members.part(part)), starts.of(part).places
-        pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
+        inertias, system = inertias_of(members.part(part)), members.discrete.system
+        pieces[part.start] = members_by_series(system, inertias, momenta[part], poses[part], *options)
 
-    numbers = sum(x.shape[1] for x in starts.places) * len(time)
+    numbers = (momenta.shape[1] + poses.shape[1]) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     group, free = members.discrete.system.group, members.discrete.system.forces is None
     is_short = free and count <= _FLOWS and count * numbers <= _SOON
@@ -305,7 +286,7 @@ def run_by_series(members: Members, starts: First, plan: Plan, threads: int, rep
         codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
         for column in columns.values():
             column[np.arange(len(time)) >= good[:, None]] = np.nan
-    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
+    return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, momenta, poses)
 
 
 def _motion_bound(members: Members, starts: First, time: np.ndarray) -> float:
@@ -335,7 +316,7 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
 
 
 def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
-    """Do all pieces of work and report each.
+    """Do all pieces of work and report each; what ends this thread, Ctrl-C among it, soon ends the others.
 
     Args:
         work: Does a piece; beside others it releases the interpreter's lock, and ends soon when the array becomes true.
@@ -343,17 +324,11 @@ def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], th
         threads: How many; 0 for this one, which Ctrl-C reaches only between calls of compiled code.
         report: Called with the number of members of a piece.
     """
-    for part in _finish_each(work, parts, threads):
-        report(part.stop - part.start)
-
-
-def _finish_each(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
-    """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
     stop = np.zeros(1, dtype=np.bool_)
     if not threads:
         for part in parts:
             work(part, stop)
-            yield part
+            report(part.stop - part.start)
         return
 
     def do(part: slice) -> None:
@@ -365,7 +340,7 @@ def _finish_each(work: Callable[[slice, np.ndarray], None], parts: list[slice], 
         waiting = {pool.submit(do, part): part for part in parts}
         for future in as_completed(waiting):
             future.result()
-            yield waiting[future]
+            report(waiting[future].stop - waiting[future].start)
     finally:
         stop[0] = True
         pool.shutdown(cancel_futures=True)

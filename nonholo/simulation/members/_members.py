@@ -1,8 +1,9 @@
 """The members of an ensemble: one motion, the parameters in which each differs, their closed form and their starts."""
 
+import contextlib
 import dataclasses
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -91,11 +92,6 @@ class Members(Keeper):
         return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
     @functools.cached_property
-    def keep_frame(self) -> bool:
-        """Whether all members clearly have the canonical frame of the shared motion, with all parameters."""
-        return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
-
-    @functools.cached_property
     def lanes(self) -> Any:
         """The route of all members in one, in closed form; None where they do not have the same."""
         if self.route is None or not self.route.is_scalar or self.joint_system is None:
@@ -142,27 +138,26 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     kind, arrays = type(motion.system if in_coordinates(motion) else motion.system.inside).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
-            raise _unknown(name, kind, [*numbers])
+            requirement, remedy = "name fields of the system", f"{kind} has {', '.join(numbers)}."
+            if [*numbers] == [STEP]:
+                requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
+                remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
+            elif name == STEP:
+                remedy = "A flow has no time step."
+            raise error("ensemble(parameters=...)", requirement, shown(name), remedy)
         shape = np.shape(numbers[name])
         where = f"ensemble(parameters={{{name!r}: ...}})"
         arrays[name] = array(where, value, (None, *shape), "Pass one value for each member.")
     return arrays
 
 
-def _unknown(name: str, kind: str, names: list[str]) -> ValueError:
-    """Return the error of a parameter that is none."""
-    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(names)}."
-    if names == [STEP]:
-        requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
-        remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
-    elif name == STEP:
-        remedy = "A flow has no time step."
-    return error("ensemble(parameters=...)", requirement, shown(name), remedy)
-
-
-def refusal(member: int, failure: ValueError) -> ValueError:
-    """Return the error of one member, with its number."""
-    return ValueError(f"{failure} This is member {member}.")
+@contextlib.contextmanager
+def naming(member: int) -> Iterator[None]:
+    """Refuse one member with its number."""
+    try:
+        yield
+    except ValueError as failure:
+        raise ValueError(f"{failure} This is member {member}.") from failure
 
 
 class ScalarMembers:
@@ -267,11 +262,9 @@ def check_systems(members: Members) -> None:
         raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
     joint = members.joint_system
     is_clear = not members.of_system or (joint is not None and joint.is_clear)  # that all of them, or each, can be made
-    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))):
-        try:
-            members.of(int(member))
-        except ValueError as failure:
-            raise refusal(int(member), failure) from None
+    for member in np.flatnonzero(~np.broadcast_to(is_clear, len(members))).tolist():
+        with naming(member):
+            members.of(member)
 
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
@@ -285,16 +278,12 @@ def in_rows(motion: Any, start: Start, parameters: Any) -> tuple[Start, int, dic
     The start and the pose may be one for all members where something else has a row for each.
     """
     numbers, (pose, velocity) = checked_parameters(motion, parameters), motion.system.shapes
-    shapes = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
+    shapes: dict[str, Any] = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
     arrays = {"configuration": start.configuration, start.name: start.value}
     arrays = {name: value for name, value in arrays.items() if value is not None}
     several = [name for name, value in arrays.items() if len(shape_of(value)) != len(shapes[name])]
-    rows = {
-        name: array(
-            f"{start.owner}({name}=...)", value, (None, *shapes[name]) if name in several else shapes[name], _ONE
-        )
-        for name, value in arrays.items()
-    }
+    shapes |= {name: (None, *shapes[name]) for name in several}
+    rows = {name: array(f"{start.owner}({name}=...)", x, shapes[name], _ONE) for name, x in arrays.items()}
     count = _common({name: len(values) for name, values in numbers.items()} | {n: len(rows[n]) for n in several})
     whole = {n: x if n in several else np.broadcast_to(x, (count, *x.shape)) for n, x in rows.items()}
     return start._replace(value=whole[start.name], configuration=whole.get("configuration")), count, numbers
@@ -341,18 +330,16 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
 def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> First:
     each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    demand = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
-    return First(numbers, demand)
+    demands = [first.demand for first in each if first.demand is not None]
+    return First(numbers, np.stack(demands) if demands else None)
 
 
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:
     """Return the checked start of one member, refused with its number."""
     pose = None if start.configuration is None else start.configuration[member]
     own = start._replace(value=start.value[member], configuration=pose)
-    try:
+    with naming(member):
         return members.of(member).first(own, with_poses=with_poses)
-    except ValueError as failure:
-        raise refusal(member, failure) from None
 
 
 def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
@@ -361,10 +348,8 @@ def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
     if start.configuration is None:
         return np.broadcast_to(pose, (len(members), pose.shape[1]))
     for member, g in enumerate(start.configuration):
-        try:
+        with naming(member):
             in_group(f"{start.owner}(configuration=...)", system.group, g)
-        except ValueError as failure:
-            raise refusal(member, failure) from None
     frames = system.frame if len(pose) == 1 else system.group.matrix_from_pose(pose)
     return system.group.pose_from_matrix(start.configuration @ frames)
 

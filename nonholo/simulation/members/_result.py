@@ -319,9 +319,9 @@ class Ensemble:
             return False
         is_composition = name == "displacement" and getattr(self.members.route, "order", 2) > 2
         same = set() if name == "momentum" or is_composition else {"time_step"}
-        names = self.members.of_system
-        if names and name in _OF_FRAME and not is_composition and self.members.keep_frame:
-            same |= names
+        joint = self.members.joint_system
+        if name in _OF_FRAME and not is_composition and joint is not None:
+            same |= self.members.of_system if np.all(joint.frame == motion.system.frame) else set()
         return self.members.parameters.keys() <= same
 
 
@@ -355,10 +355,9 @@ def watched_block(events: dict[str, Event], block: Ensemble, every: int | None) 
         motion = block.members.of(int(group[0]))
         states, member = _flat(motion, columns, group)
         values, left = values_of(events, states), np.repeat(limits[:, None], len(group), axis=1)
-        places = find_crossings(events, states, values, member - group[0], left, motion.after_parts)
-        over = group[places.stopper >= 0]
-        stopper[group], end[over] = places.stopper, places.end[places.stopper >= 0]
-        for place, ((name, event), row, at) in enumerate(zip(events.items(), values, places.at, strict=True)):
+        places, stops, last_steps = find_crossings(events, states, values, member - group[0], left, motion.after_parts)
+        stopper[group], end[group[stops >= 0]] = stops, last_steps[stops >= 0]
+        for place, ((name, event), row, at) in enumerate(zip(events.items(), values, places, strict=True)):
             counts[place] += np.bincount(member[at], minlength=len(block))
             first, last = (each[np.unique(member[each], return_index=True)[1]] for each in (at, at[::-1]))
             outer = np.union1d(first, last)
@@ -437,12 +436,8 @@ def joined_blocks(whole: Members, blocks: Sequence[Ensemble]) -> Ensemble:
 
 
 def _joined_log(whole: Members, logs: Sequence[MemberEvents]) -> MemberEvents:
-    crossings = tuple(
-        MemberCrossings(
-            np.concatenate([part.count for part in column]),
-            joined_blocks(whole, [part.first for part in column]),
-            joined_blocks(whole, [part.last for part in column]),
-        )
-        for column in zip(*(log.found for log in logs), strict=True)
-    )
-    return MemberEvents(logs[0].names, crossings, np.concatenate([log.stopped_by for log in logs]))
+    crossings = []
+    for column in zip(*(log.found for log in logs), strict=True):
+        ends = (joined_blocks(whole, [getattr(part, end) for part in column]) for end in ("first", "last"))
+        crossings.append(MemberCrossings(np.concatenate([part.count for part in column]), *ends))
+    return MemberEvents(logs[0].names, tuple(crossings), np.concatenate([log.stopped_by for log in logs]))
