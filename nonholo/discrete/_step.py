@@ -74,7 +74,7 @@ def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule =
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
     in_jax = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
     rule = branching.branch_rule("step", branch)
-    if in_jax and rule.needs_all_values:
+    if in_jax and not (rule.is_principal or rule.is_nearest):
         got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
     rule.check("step(branch=...)", discrete)

@@ -52,48 +52,38 @@ class BranchGrowth:
         return math.log(self.rate)
 
 
-class Numbers(NamedTuple):
-    """Doubles, or balls whose comparisons are true only if they are certain."""
-
-    number: Any
-    sqrt: Callable[[Any], Any]
-    asinh: Callable[[Any], Any]
-    atanh: Callable[[Any], Any]
-
-
-DOUBLES = Numbers(float, math.sqrt, math.asinh, math.atanh)
-
-
 class Axis(NamedTuple):
     r"""The map of x, with the root $\tau$ of the cubic as its parameter; each branch of x grows with it.
 
     Attributes:
         turn: $\kappa = \sqrt{ma^2/I}$.
         lift: $\sqrt{2I/E}/h$.
-        numbers: The two numbers.
+        number: Makes the two numbers: doubles, or balls whose comparisons are true only if they are certain.
+        functions: What has their functions.
     """
 
     turn: Any
     lift: Any
-    numbers: Numbers
+    number: Any = float
+    functions: Any = math
 
     @classmethod
-    def of(cls, body: tuple[float, ...], numbers: Numbers) -> "Axis":
+    def of(cls, body: tuple[float, ...], number: Any = float, functions: Any = math) -> "Axis":
         """Return the map for m, J, a, h and E."""
-        mass, inertia, arm, step, energy = map(numbers.number, body)
-        whole = inertia + mass * arm * arm
-        return cls(numbers.sqrt(mass * arm * arm / whole), numbers.sqrt(2 * whole / energy) / step, numbers)
+        mass, inertia, arm, step, energy = map(number, body)
+        whole, sqrt = inertia + mass * arm * arm, functions.sqrt
+        return cls(sqrt(mass * arm * arm / whole), sqrt(2 * whole / energy) / step, number, functions)
 
     def ends(self, tau: float) -> tuple[Any, Any]:
         """Return x before and after the step."""
-        t, f = self.numbers.number(tau), self.numbers
+        t, f = self.number(tau), self.functions
         k = self.turn * t
         middle, half = f.asinh(self.lift * t * f.sqrt(1 - k * k) / (1 - t * t)), f.atanh(k)
         return middle + half, middle - half
 
     def rises(self, tau: float) -> bool:
         """Return whether x after the step grows with x before it; of tau > 1, from there down to 1."""
-        square = self.numbers.number(tau) ** 2
+        square = self.number(tau) ** 2
         k = self.turn**2 * square
         return bool((self.lift * (1 - k)) ** 2 * ((1 + square) ** 2 - 4 * k) > (self.turn * (1 - square) ** 2) ** 2)
 
@@ -101,7 +91,7 @@ class Axis(NamedTuple):
         """Return two tau close together, the x of one below and of the other above a given one."""
         turn = float(self.turn)
         low, high = (1 + 2.0**-50, (1 - 2.0**-50) / turn) if outer else (0.0, 1 - 2.0**-50)
-        rough = Axis(turn, float(self.lift), DOUBLES)
+        rough = Axis(turn, float(self.lift))
         tau = _root(lambda t: rough.ends(t)[0] - float(x), low, high)
         for share in 2.0 ** np.arange(-50, 0):
             below, above = tau - float(share) * (tau - low), tau + float(share) * (high - tau)
@@ -158,7 +148,7 @@ def branch_growth(discrete: Discretization, certify: bool = False, *, energy: fl
     level = highest * _BELOW if energy is None else float(positive(where, energy, "Pass a level of the energy."))
     body = (mass, inertia, arm, step, level)
     try:
-        words, discs = _words_in_balls(body) if certify else best_words(Axis.of(body, DOUBLES))
+        words, discs = _words_in_balls(body) if certify else best_words(Axis.of(body))
     except ArithmeticError:
         got = f"{level:.6g}, with J = {inertia:.6g} and ma^2 = {moment:.6g}"
         requirement = f"be below {highest:.6g} and give words of at most {_LONGEST} steps"
@@ -188,7 +178,7 @@ def _words_in_balls(body: tuple[float, ...]) -> tuple[Words, Float[np.ndarray, "
     with needs("certify", "branch_growth(certify=...)"):
         from flint import arb, ctx
     with ctx.workprec(_BITS):
-        return best_words(Axis.of(body, Numbers(arb, arb.sqrt, arb.asinh, arb.atanh)))
+        return best_words(Axis.of(body, arb, arb))
 
 
 def best_words(axis: Axis) -> tuple[Words, Float[np.ndarray, "d 2"]]:
@@ -210,7 +200,7 @@ def _words(axis: Axis, mirror: int, longest: int) -> tuple[Words, Float[np.ndarr
     $\beta(K)$ lies in $(-\rho_0, -\varphi(\rho_0))$, whose second end is close to $\beta(0)$; mirrored, both ends are
     as far from it.
     """
-    rough = Axis(float(axis.turn), float(axis.lift), DOUBLES)
+    rough = Axis(float(axis.turn), float(axis.lift))
     jump = -rough.ends(rough.around(0.0, outer=True)[0])[1]
 
     def gap(tau: float) -> float:

@@ -59,14 +59,13 @@ class AbstractBranchRule(abc.ABC):
     Attributes:
         name: Its name in an orbit.
         is_principal: Whether it is the principal value, which has compiled runs, parts of steps and events.
-        is_nearest: Whether it follows the present value, for which there is a kernel.
-        needs_all_values: Whether it chooses among all values, which has to be done outside of a JAX transformation.
+        is_nearest: Whether it follows the present value, for which there is a kernel. All others choose among all
+            values, which has to be done outside of a JAX transformation.
     """
 
     name: str
     is_principal: ClassVar[bool] = False
     is_nearest: ClassVar[bool] = False
-    needs_all_values: ClassVar[bool] = True
 
     @property
     def argument(self) -> BranchRule:
@@ -101,7 +100,6 @@ class Principal(AbstractBranchRule):
 
     name: str = "principal"
     is_principal: ClassVar[bool] = True
-    needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Every discretization has it."""
@@ -117,7 +115,6 @@ class Nearest(AbstractBranchRule):
 
     name: str = "nearest"
     is_nearest: ClassVar[bool] = True
-    needs_all_values: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Every left-invariant constraint has it."""
@@ -139,10 +136,8 @@ class Extreme(AbstractBranchRule):
         """Choose by the norm; a tie is not decided."""
         roots, values = _values_after(kick)
         real = np.flatnonzero(values.is_real)
-        if len(real) == 0:
-            return _only(kick, roots, values, [])
         norms = self.sign * _values.momentum_sizes(kick.discrete, kick.frame, values.momentum[real])
-        ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
+        ties = real[norms <= norms.min(initial=np.inf) + _TIED * np.abs(norms).max(initial=0.0)]
         return _only(kick, roots, values, ties.tolist())
 
 
@@ -305,14 +300,10 @@ class RuleStepper(AbstractBodyStepper):
     """Rows are canonical; its own numbers are those of `_Now`.
 
     Attributes:
-        motion: The discretization.
         rule: Which value of the map a step takes.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     rule: AbstractBranchRule
-    with_poses: bool
 
     @property
     def branch(self) -> str:  # type: ignore[override]

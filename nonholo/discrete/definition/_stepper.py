@@ -51,13 +51,9 @@ class DefinitionStepper(AbstractBodyStepper):
     """Rows are momenta, charts and matrices of poses in the user's frame; a composition is a whole step ahead of them.
 
     Attributes:
-        motion: The discretization.
-        with_poses: Whether poses are saved.
         branch: "principal" or "nearest".
     """
 
-    motion: Any
-    with_poses: bool
     branch: str = "principal"
 
     @property

@@ -21,6 +21,7 @@ Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
 class AbstractBodyStepper(AbstractStepper[Orbit]):
     """The steps of a map on a group: rows are momenta, charts and poses in the numbers of the kernel.
 
@@ -88,14 +89,10 @@ class CompiledStepper(AbstractBodyStepper):
     """The steps of a route with a kernel: rows are as the kernel has them.
 
     Attributes:
-        motion: The discretization.
         route: The route.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     route: Any
-    with_poses: bool
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -277,7 +274,7 @@ class AbstractCompiledRoute(abc.ABC):
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps of a discretization, and saves poses or not: the kernel."""
         del branch
-        return CompiledStepper(motion, self, with_poses)
+        return CompiledStepper(motion, with_poses, self)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""

@@ -104,7 +104,7 @@ class SlipRoute(AbstractForcedRoute):
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> "SlipStepper":
         """Return what takes the steps."""
         del branch
-        return SlipStepper(motion, self, with_poses)
+        return SlipStepper(motion, with_poses, self)
 
     def wide(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical charts of steps that hold as those of the body without the rows."""
@@ -251,14 +251,10 @@ class SlipStepper(AbstractBodyStepper):
     holds began, -1 without one, and the state of that run.
 
     Attributes:
-        motion: The discretization.
         route: The route.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     route: SlipRoute
-    with_poses: bool
 
     @property
     def sizes(self) -> tuple[int, int, int]:
