@@ -10,7 +10,7 @@ from nonholo.base.checks import error, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
+from nonholo.discrete._decoder import ClosedDisplacementDecoder, DisplacementDecoder
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, legendre, refuse_composition
 from nonholo.discrete._variety import definition, equations_of
@@ -54,9 +54,12 @@ class Discretization(Scheme, AbstractMotion):
         return make_route(self, self.wanted_route)
 
     @functools.cached_property
-    def displacement_decoder(self) -> AnyDisplacementDecoder:
+    def displacement_decoder(self) -> DisplacementDecoder | ClosedDisplacementDecoder:
         """The decoder of the displacements of its single steps."""
-        return displacement_decoder(self, self.decoder)
+        numbers = self.decoder.numbers if self.difference == "matrix" else None
+        if numbers is None or not self.variety.exact or self.variety.exponential:
+            return DisplacementDecoder(self)
+        return ClosedDisplacementDecoder(numbers, float(self.time_step))
 
     @functools.cached_property
     def _steppers(self) -> tuple[AbstractBodyStepper, ...]:

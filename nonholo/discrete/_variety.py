@@ -7,7 +7,6 @@ first two are the same set, and the Cayley image of $\mathfrak{d}$ too.
 """
 
 import dataclasses
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -96,17 +95,9 @@ def variety_of(system: AbstractSystem, constraint: Constraint) -> Variety:
     if constraint not in ("skew", "exponential"):
         every, annihilator = np.eye(system.group.dim), np.asarray(system.annihilator)
         return Variety(system.group, every, annihilator, constraint, exponential=False, frame=system.frame)
-    canonical = system.canonical
-    subspace, annihilator = np.asarray(canonical.constraint_subspace), np.asarray(canonical.annihilator)
-    rows = (subspace.tobytes(), subspace.shape, annihilator.tobytes(), annihilator.shape)
-    return _variety(system.group, rows, constraint, has_form=canonical.normal_form is not None)
-
-
-@functools.lru_cache(maxsize=256)
-def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str, *, has_form: bool) -> Variety:
-    data, shape, other, other_shape = rows
-    subspace = np.frombuffer(data).reshape(shape)
-    annihilator = np.frombuffer(other).reshape(other_shape)
+    canonical, group = system.canonical, system.group
+    subspace, annihilator = map(np.ascontiguousarray, (canonical.constraint_subspace, canonical.annihilator))
+    has_form = canonical.normal_form is not None
     is_closed = has_form or (group.has_skew_part and _cubes_stay(group, subspace, annihilator))
     exponential = constraint == "exponential" and not is_closed
     chart = subspace if is_closed or exponential else np.eye(group.dim)

@@ -190,7 +190,7 @@ def _slope(rows: Sequence[np.ndarray]) -> Float[np.ndarray, "n"]:
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(report.result_or_raise(s.run)))
+    return float(s.steps + 1 - len(report.result_of(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)

@@ -448,13 +448,13 @@ def transversality(s: OrbitSamples) -> float:
 @measures(CHECKS, "orbit", f"a run with steps of norm {STEP} goes through, or with a part of that: the divisor", 32.0)
 def runs(s: OrbitSamples) -> float:
     """Return the share of the intended path that a short run covers, inverted; raise what it raised."""
-    return s.steps * s.step / report.result_or_raise(s.run)[1]
+    return s.steps * s.step / report.result_of(s.run)[1]
 
 
 @measures(CHECKS, "finer orbits", f"one path in {report.COUNTS} steps goes through, or a part of it: the divisor", 32.0)
 def runs_finer(s: OrbitSamples) -> float:
     """Return the same of runs in finer and finer steps."""
-    return s.path / report.result_or_raise(s.finer)[1]
+    return s.path / report.result_of(s.finer)[1]
 
 
 @measures(CHECKS, "start", "P(W_0) along d is the momentum of the velocity", 1e-11)

@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md, "Following a value".
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -18,10 +18,8 @@ from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Bool, Float, Inexact
+from nonholo.discrete._discretization import Discretization
 from nonholo.systems import NormalForm
-
-if TYPE_CHECKING:
-    from nonholo.discrete._discretization import Discretization
 
 _BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
 _RANK = 1e-13  # relative singular value below which a direction is left alone
@@ -251,13 +249,13 @@ class Frame:
         return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.offset @ z) / self.length]])
 
 
-def has_frame(discrete: "Discretization") -> bool:
+def has_frame(discrete: Discretization) -> bool:
     """Return whether all branches of a discretization are known."""
     has_form = discrete.system.normal_form is not None
     return has_form and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
 
-def frame_of(where: str, discrete: "Discretization") -> Frame:
+def frame_of(where: str, discrete: Discretization) -> Frame:
     """Return the frame of a system whose branches are known, or refuse it."""
     if not has_frame(discrete):
         requirement = "be a top or a sleigh with difference 'matrix'"
@@ -265,10 +263,7 @@ def frame_of(where: str, discrete: "Discretization") -> Frame:
         got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         remedy = "Discretize one of them with constraint 'skew' or 'exponential'; of others only the principal "
         raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
-    return _frame(cast(NormalForm, discrete.system.normal_form))
-
-
-def _frame(form: NormalForm) -> Frame:
+    form = cast(NormalForm, discrete.system.normal_form)
     eigenvalues, axes = np.linalg.eigh(form.stiffness_matrix)
     unit = float(eigenvalues[-1] + (form.mass * form.arm**2 if form.is_sleigh else 0.0))
     length = float(np.sqrt(unit / form.mass)) if form.is_sleigh else None

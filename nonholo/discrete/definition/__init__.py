@@ -11,7 +11,7 @@ from nonholo.discrete.definition._step import (
     momenta_by_derivative,
     momentum_of,
     nearest_displacement,
-    next_charts_by_definition,
+    next_charts,
     principal_of,
     sample_displacements,
     trace,

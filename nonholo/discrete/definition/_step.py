@@ -24,7 +24,6 @@ from nonholo.discrete.definition._precision import compile_double, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import Orbit, step_poses
 
 _SAMPLES = 16
 _EVEN = 1e-10  # relative difference of values that counts as rounding
@@ -91,14 +90,10 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     return residual
 
 
-def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarray, "K m"]:
-    """Return the canonical chart coordinates that follow, one step from each state."""
-    return in_double(_next_charts, discrete, states.canonical_chart, step_poses(states))
-
-
-def _next_chart(discrete: Scheme, y: Array, g: Array) -> Array:
-    """Return the chart after one step to the principal value."""
-    return principal_displacement(discrete, *push(discrete, y, g))[0]
+@compile_double
+def next_charts(discrete: Scheme, charts: Float[Array, "K m"], g: Float[Array, "K N N"]) -> Float[Array, "K m"]:
+    """Return the charts after one step to the principal value from each chart and pose."""
+    return jax.vmap(lambda *state: principal_displacement(discrete, *push(discrete, *state))[0])(charts, g)
 
 
 def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
@@ -106,9 +101,6 @@ def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     W = displacement_of(discrete, y)
     after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
-
-
-_next_charts = equinox.filter_jit(jax.vmap(_next_chart, in_axes=(None, 0, 0)))
 
 
 def trace(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> TracedFunction:

@@ -14,8 +14,8 @@ from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledR
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
-from nonholo.discrete.routes._slipping import slip_route
-from nonholo.orbit import Orbit
+from nonholo.discrete.routes._slipping import SlipRoute
+from nonholo.orbit import Orbit, step_poses
 from nonholo.systems import Forced, NormalForm
 
 
@@ -44,7 +44,8 @@ class DefinitionRoute(Scheme, AbstractCompiledRoute):
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
-        return definition("A step that is not compiled").next_charts_by_definition(self, states)
+        next_charts = definition("A step that is not compiled").next_charts
+        return next_charts(self, states.canonical_chart, step_poses(states))
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart, and a state one step ahead."""
@@ -90,11 +91,11 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractCompile
             next more general one, is taken. Stores name the route that began them.
     """
     if scheme.system.is_forced:
-        forced = cast(Forced, scheme.system)
-        free = dataclasses.replace(cast(Any, scheme), system=forced.system)
-        is_balanced = cast(Any, scheme).is_balanced
+        whole, forced = cast(Any, scheme), cast(Forced, scheme.system)
+        free, is_balanced = dataclasses.replace(whole, system=forced.system), whole.is_balanced
         if forced.slips:
-            return slip_route(scheme, forced, functools.partial(make_route, route_name=route_name))
+            slide, hold = (dataclasses.replace(whole, system=each) for each in (forced.sliding, forced.holding))
+            return SlipRoute(make_route(slide, route_name), forced, make_route(hold, route_name), hold)
         if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")
             matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)

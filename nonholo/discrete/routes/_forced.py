@@ -53,10 +53,7 @@ class ComposedRoute(AbstractOuterRoute):
         """The body and the weights of the substeps."""
         return kernels.ComposedBody(self.single.body, weights(self.order).copy())
 
-    @property
-    def single(self) -> AbstractCompiledRoute:
-        """The discretization that is composed."""
-        return self.substep
+    single = property(attrgetter("substep"))
 
 
 def forced_route(free: AbstractCompiledRoute, forced: Forced) -> AbstractCompiledRoute:

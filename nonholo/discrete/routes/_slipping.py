@@ -10,7 +10,6 @@ Reference: docs/theory/forces.md, Theorem 18.4.
 
 import dataclasses
 import functools
-from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -28,12 +27,6 @@ _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
 _SEEN = 1e-8  # relative, of what changes a slope
 _STRETCH = 512  # steps that hold, taken at once
-
-
-def slip_route(scheme: Any, forced: Forced, route_of: Callable[[Any], Any]) -> "SlipRoute":
-    """Return the route of rows that may yield."""
-    holding, sliding = (dataclasses.replace(scheme, system=each) for each in (forced.holding, forced.sliding))
-    return SlipRoute(route_of(sliding), forced, route_of(holding), holding)
 
 
 Here = tuple[np.ndarray, np.ndarray]
