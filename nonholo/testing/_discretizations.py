@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import scipy.integrate
@@ -508,8 +508,7 @@ def compiled_reversal(s: OrbitSamples) -> float:
     """Return the miss of one compiled step forward and back."""
     need(s.discrete.route.compiled_route is not None, "the step is not compiled")
     need(s.discrete.forces is None, "forces act")
-    defect = invariants(s.orbit).reversal_defect
-    return float("nan") if defect is None else defect
+    return cast(float, invariants(s.orbit).reversal_defect)
 
 
 def energy_drift(s: OrbitSamples) -> float:
