@@ -12,8 +12,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._decoder import ClosedDisplacementDecoder, DisplacementDecoder
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Scheme, legendre, refuse_composition
-from nonholo.discrete._variety import definition, equations_of
+from nonholo.discrete._scheme import Scheme, definition, equations_of, legendre, refuse_composition
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractCompiledRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces

@@ -8,8 +8,7 @@ import numpy as np
 from nonholo.base.checks import choice, error, function, scale
 from nonholo.base.types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._scheme import Difference, checked_order
-from nonholo.discrete._variety import Constraint, at_identity, checked_constraint, definition
+from nonholo.discrete._scheme import Constraint, Difference, at_identity, checked_constraint, checked_order, definition
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, as_system, refuse_in_coordinates
 
 

@@ -18,8 +18,7 @@ from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._scheme import matrix_legendre
-from nonholo.discrete._variety import free_rows
+from nonholo.discrete._scheme import free_rows, matrix_legendre
 from nonholo.discrete.branching._equations import FAR, Equations, Frame, frame_of, has_frame
 from nonholo.discrete.branching._roots import by_loops, distinct, disturb, follow_all, roots_of
 from nonholo.discrete.routes import make_route

@@ -1,6 +1,6 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
-from nonholo.discrete._variety import free_rows
+from nonholo.discrete._scheme import free_rows
 from nonholo.discrete.definition._precision import allow_float32, compile_double, in_double
 from nonholo.discrete.definition._rollout import Rollout, roll_out, step_residual, step_slopes
 from nonholo.discrete.definition._step import (

@@ -17,8 +17,7 @@ from nonholo import kernels
 from nonholo.base.results import Outcome, as_table
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
-from nonholo.discrete._scheme import Scheme, weights
-from nonholo.discrete._variety import free_rows
+from nonholo.discrete._scheme import Scheme, free_rows, weights
 from nonholo.discrete.definition import _step
 from nonholo.discrete.definition._precision import compile_double
 from nonholo.discrete.routes import ScalarStep

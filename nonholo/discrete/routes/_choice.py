@@ -8,8 +8,7 @@ import numpy as np
 
 from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Scheme, weights
-from nonholo.discrete._variety import definition, variety_of
+from nonholo.discrete._scheme import Scheme, definition, variety_of, weights
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute

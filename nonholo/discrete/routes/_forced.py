@@ -18,8 +18,7 @@ from nonholo.base.calls import FunctionError, UndefinedError, note_fault, number
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete._scheme import weights
-from nonholo.discrete._variety import variety_of
+from nonholo.discrete._scheme import variety_of, weights
 from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, plain, poses_of
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit

@@ -20,7 +20,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.numerics import product_and_remainder
 from nonholo.base.types import Array, Float
-from nonholo.discrete._variety import Variety, forbidden_matrices, free_rows
+from nonholo.discrete._scheme import Variety, forbidden_matrices, free_rows
 from nonholo.discrete.routes._base import AbstractCompiledRoute, plain
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, System, inertia_from_mass_tensor

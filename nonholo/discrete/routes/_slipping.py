@@ -17,11 +17,11 @@ import numpy as np
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Bool, Float
-from nonholo.discrete._variety import Variety, variety_of
+from nonholo.discrete._scheme import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems import Forced, Widened, friction, update_slope
+from nonholo.systems import Widened, friction, update_slope
 
 _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
