@@ -1,4 +1,4 @@
-r"""The displacement variety, and the parts of the equations of a step: all of a discretization that they and routes see.
+r"""The displacement variety, and the parts of the equations of a step: what they and routes see of a discretization.
 
 A variety is where displacements may lie, as a chart and the equations that the chart leaves over.
 "skew": $(W - W^{-1})/2 \in \mathfrak{d}$, the irreducible analytic component through the identity. "exponential":

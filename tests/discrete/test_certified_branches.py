@@ -14,7 +14,7 @@ from sturm import assert_counted, real_roots
 
 import nonholo as nh
 from nonholo.discrete.certificate import _roots as certificate_roots
-from nonholo.discrete.certificate._families import _secular
+from nonholo.discrete.certificate._certificate import _secular
 from nonholo.discrete.certificate._roots import Problem, isolate, sharpen
 from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup

@@ -1,7 +1,7 @@
 """The values of the multivalued map: their equations, how one is followed, rules that choose among them, their tree."""
 
 from nonholo.discrete.branching._equations import frame_of, has_frame
-from nonholo.discrete.branching._growth import BranchGrowth, branch_growth
+from nonholo.discrete.branching._growth import BranchGrowth, BranchTree, branch_growth, branch_tree
 from nonholo.discrete.branching._rules import (
     PRINCIPAL,
     AbstractBranchRule,
@@ -13,7 +13,6 @@ from nonholo.discrete.branching._rules import (
     first_place,
     next_place,
 )
-from nonholo.discrete.branching._tree import BranchTree, branch_tree
 from nonholo.discrete.branching._values import (
     Branches,
     Landscape,
