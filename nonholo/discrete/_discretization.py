@@ -69,12 +69,24 @@ class Discretization(Scheme, AbstractMotion):
         return self._steppers[bool(with_poses)]
 
     def first(self, start: Start, *, with_poses: bool) -> First:
-        """Return the checked start of a run whose rows have poses or not: one may be large."""
+        """Return the checked start of a run whose rows have poses or not: one may be large.
+
+        A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root
+        agrees.
+        """
         system, g = self.system, None
         if start.configuration is not None or (with_poses and system.is_spatial):
             g = start.pose(system.group)
-        reduced, demand = initial_state(self, start, g if with_poses else None)
-        return First((reduced, start.canonical_pose(system, g) if with_poses else np.empty(0)), demand)
+        g, pose = (g, start.canonical_pose(system, g)) if with_poses else (None, np.empty(0))
+        if start.name != "displacement":
+            full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
+            return First((start.momentum(system, g), pose), np.asarray(start.value, dtype=np.float64) if full else None)
+        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
+        refuse_composition(start.where, self, remedy)
+        refuse_forces(start.where, system)
+        W = on_variety(start.where, self, g, start.value)
+        momentum = legendre(self, W - system.group.identity, "left")
+        return First((of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), pose), W)
 
     @functools.cached_property
     def forces(self) -> Forced | None:
@@ -301,25 +313,6 @@ def as_discretization(where: str, value: Any, *, compositions: bool = False, for
     if not forced:
         refuse_forces(where, value.system)
     return value
-
-
-def initial_state(
-    discrete: Scheme, start: Start, g: Float[np.ndarray, "N N"] | None
-) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
-    """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
-
-    A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root agrees.
-    """
-    system = discrete.system
-    if start.name == "displacement":
-        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
-        refuse_composition(start.where, discrete, remedy)
-        refuse_forces(start.where, discrete.system)
-        W = on_variety(start.where, discrete, g, start.value)
-        momentum = legendre(discrete, W - system.group.identity, "left")
-        return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), W
-    full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
-    return start.momentum(system, g), np.asarray(start.value, dtype=np.float64) if full else None
 
 
 def check_first_state(demand: np.ndarray, there: Orbit) -> None:

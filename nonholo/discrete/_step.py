@@ -73,11 +73,10 @@ def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule =
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
     in_jax = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
-    rule = branching.branch_rule("step", branch)
+    rule = branching.checked_rule("step", discrete, branch)
     if in_jax and not (rule.is_principal or rule.is_nearest):
         got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
-    rule.check("step(branch=...)", discrete)
     if rule.is_principal or in_jax or not branching.has_frame(discrete):
         route = discrete.route
         scalar_step = jax.tree.map(definition.traceable, route.step) if isinstance(route, ScalarRoute) else None

@@ -7,7 +7,6 @@ from nonholo.discrete.branching._rules import (
     AbstractBranchRule,
     BranchRule,
     RuleStepper,
-    branch_rule,
     checked_rule,
     displacement_at,
     first_place,

@@ -7,6 +7,7 @@ displacement variety, where nothing is special at angle $\pi$.
 
 import abc
 import dataclasses
+import itertools
 from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
@@ -67,23 +68,20 @@ class AbstractBranchRule(abc.ABC):
     is_principal: ClassVar[bool] = False
     is_nearest: ClassVar[bool] = False
 
-    @property
-    def argument(self) -> BranchRule:
-        """The argument `branch` that asks for it: a name, or a function."""
-        return self.name
-
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
         self._check_left_invariant(where, discrete)
         if not has_frame(discrete):
-            got = f"{shown(self.argument)} for {type(discrete.system).__name__}, of whose values not all are known"
+            asked = shown(getattr(self, "function", self.name))
+            got = f"{asked} for {type(discrete.system).__name__}, of whose values not all are known"
             remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
             raise error(where, "be 'principal' or 'nearest'", got, remedy)
 
     def _check_left_invariant(self, where: str, discrete: Discretization) -> None:
         if discrete.system.is_spatial:
             changing = "a right-invariant constraint, whose equations change with the pose from step to step"
-            raise error(where, "be 'principal'", f"{shown(self.argument)} for {changing}", "Leave it out.")
+            got = f"{shown(getattr(self, 'function', self.name))} for {changing}"
+            raise error(where, "be 'principal'", got, "Leave it out.")
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
@@ -179,11 +177,6 @@ class Chosen(AbstractBranchRule):
 
     function: Chooser
     name: str = "callable"
-
-    @property
-    def argument(self) -> Chooser:
-        """The function."""
-        return self.function
 
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
@@ -338,7 +331,8 @@ class RuleStepper(AbstractBodyStepper):
             if not (count := len(ahead.point)):
                 break
             points = np.concatenate([now.place.point[None], ahead.point])
-            matrices = _poses_after(now.g, frame.increment(points[:-1]) + group.identity)
+            W = frame.increment(points[:-1]) + group.identity
+            matrices = np.array([*itertools.accumulate(W, np.matmul, initial=now.g)][1:])
             poses = group.normalize_pose(group.pose_from_matrix(matrices))
             at = good + 1 + np.arange(count)
             marks = np.flatnonzero(at % every == 0)
@@ -402,11 +396,3 @@ class _Now(NamedTuple):
     def vector(self) -> np.ndarray:
         """Its numbers behind the row."""
         return np.concatenate((self.place.point, self.goal, self.begin, self.g.ravel(), [self.step]))
-
-
-def _poses_after(g: np.ndarray, displacements: np.ndarray) -> np.ndarray:
-    """Return the matrices of poses after displacements, one after another."""
-    matrices = np.empty_like(displacements)
-    for step, W in enumerate(displacements):
-        g = matrices[step] = g @ W
-    return matrices

@@ -274,14 +274,15 @@ def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Flo
     balls = _enclosures(owner)(discrete, canonical) if has_frame(discrete) else _FOLLOWED
     if isinstance(balls, str):
         return dataclasses.replace(values_over(discrete, frame, r), uncertified=balls)
-    system, facts = discrete.system, zip(balls.multiplicity, balls.is_real, strict=True)
-    matrices = system.to_canonical_frame(balls.increment + system.group.identity)
-    points = [frame.point(W.real if real else W) for W, real in zip(matrices, balls.is_real, strict=True)]
-    zeros = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
+    (increment, radius, *facts), system = balls, discrete.system
+    zeros = []
+    for W, m, real in zip(system.to_canonical_frame(increment + system.group.identity), *facts, strict=True):
+        x = frame.point(W.real if real else W)
+        zeros.append(Root(x if x[0].real >= 0 else -x, int(m), bool(real)))
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
-    roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], balls.increment[order])
+    roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order])
     values = branches_of(discrete, frame, canonical, roots)
-    return dataclasses.replace(values, certified=True, radius=balls.radius[order])
+    return dataclasses.replace(values, certified=True, radius=radius[order])
 
 
 _FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"

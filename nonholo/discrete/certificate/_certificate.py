@@ -230,13 +230,8 @@ _SHARP = 2.0**-48  # relative radius that ends the search for more digits
 _ROUNDING = 2.0**-51  # of a sum rounded to doubles and of the radii themselves, relative and generous
 
 
-class Enclosures(NamedTuple):
-    """Displacements minus the identity in doubles, a bound of the error of any entry, and exact facts of them."""
-
-    increment: np.ndarray
-    radius: np.ndarray
-    multiplicity: np.ndarray
-    is_real: np.ndarray
+Enclosures = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""Displacements minus the identity in doubles, a bound of the error of any entry, multiplicities and which are real."""
 
 
 class Located(NamedTuple):
@@ -307,7 +302,7 @@ def _as_matrices(discrete: Discretization, problem: Problem, values: tuple[np.nd
     group, frame = discrete.system.group, np.asarray(discrete.system.frame)
     if not np.array_equal(frame, group.identity):
         X, radii = _turn(X, radii, frame, np.asarray(group.inverse(frame)))
-    return Enclosures(X, radii + _ROUNDING * (1 + _largest(X)), multiplicity, is_real)
+    return X, radii + _ROUNDING * (1 + _largest(X)), multiplicity, is_real
 
 
 def _products(problem: Problem, q: list[acb], scale: acb) -> list[acb]:

@@ -36,14 +36,13 @@ _NOWHERE = 0.3  # y of a root that was not found
 _FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179.9 degrees
 
 Residual = Callable[[Array, Array], Array]
-Certificate = Callable[[Array, Array], Array]
 Root = tuple[Float[Array, "m"], Float[Array, "k"]]
 """A root and its target."""
 Guess = Float[Array, "m"] | None
 
 
 def principal_root(
-    residual: Residual, target: Array, unknowns: int, certificate: Certificate | None = None, guess: Guess = None
+    residual: Residual, target: Array, unknowns: int, certificate: Residual | None = None, guess: Guess = None
 ) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
 
@@ -66,7 +65,7 @@ def principal_root(
 
 
 def followed_root(
-    residual: Residual, start: Root, target: Array, certificate: Certificate | None = None, guess: Guess = None
+    residual: Residual, start: Root, target: Array, certificate: Residual | None = None, guess: Guess = None
 ) -> tuple[Float[Array, "m"], Array]:
     """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
 
@@ -149,7 +148,7 @@ class _Path(NamedTuple):
 
 
 def _continue(
-    residual: Residual, known_root: Root, target: Array, guess: Array | None, is_certain: Certificate
+    residual: Residual, known_root: Root, target: Array, guess: Array | None, is_certain: Residual
 ) -> tuple[_Path, Array, Array]:
     """Return the end of the path, where its last root is corrected at s = 1, and whether it met a fold or was lost.
 

@@ -72,12 +72,12 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     annihilator = np.zeros((0, group.dim)) if variety.exact else variety.annihilator
     forbidden = forbidden_matrices(group, annihilator) / motions
     completion = _completion(forbidden, directions)
-    tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
-    mass = _mass_unit(tensor)
-    tensor, directions, form, inverse_form = _in_form(group, tensor / mass, directions)
+    own_tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
+    mass = _mass_unit(own_tensor)
+    tensor, directions, form, inverse_form = _in_form(group, own_tensor / mass, directions)
     spatial = system.is_spatial
     pairings, remainders = product_and_remainder(directions, tensor)
-    radius, level = (0.0, 0.0) if spatial else _certain_ball(system, mass)
+    radius, level = (0.0, 0.0) if spatial else _certain_ball(system, own_tensor, unit, mass)
     body = kernels.GeneralBody(
         tensor=plain(tensor),
         directions=plain(directions),
@@ -114,7 +114,7 @@ def _completion(forbidden: Float[np.ndarray, "s N N"], directions: Float[np.ndar
     return -(np.linalg.solve(D @ D.T, (high + low).T).T @ D).reshape(forbidden.shape)
 
 
-def _certain_ball(system: AbstractSystem, mass: float) -> tuple[float, float]:
+def _certain_ball(system: AbstractSystem, tensor: np.ndarray, unit: float, mass: float) -> tuple[float, float]:
     """Return the squared radius of the ball and the largest squared momentum for which it certifies.
 
     In the units of length and mass of the body. Zeros if there is no ball; no momentum at all on a group with a form,
@@ -122,7 +122,7 @@ def _certain_ball(system: AbstractSystem, mass: float) -> tuple[float, float]:
     """
     if system.group.form is not None:
         return 0.0, -np.inf
-    slope, least = _stiffness(system, _length_unit(system))
+    slope, least = _stiffness(system, tensor, unit)
     cosine = np.sqrt(1 - _SINES**2)
     lipschitz = slope(_SINES, cosine)
     reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
@@ -150,23 +150,20 @@ def _mass_unit(tensor: np.ndarray) -> float:
     return float(np.exp2(_BITS * np.round(exponent / _BITS)))
 
 
-def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], float]:
+def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple[Callable[..., np.ndarray], float]:
     r"""Return the Lipschitz constant of $\phi$, by sine and cosine of the largest angle, and the least inertia.
 
     $\phi(E) = \mathrm{tr}(E\,\mathbb{J}\,S^T)$ with $S = (W + W^{-1})/2 - I$; on SO(n) a multiple of the identity in
     $\mathbb{J}$ does not count.
     """
-    tensor, n = np.asarray(system.homogeneous_mass_tensor), free_rows(system.group)
-    N = len(tensor)
-    stretch = np.where(np.arange(N) < n, 1 / unit, 1.0)
-    own_tensor = tensor * np.outer(stretch, stretch)
+    n = free_rows(system.group)
     turning = np.any(system.group.basis[:, :n, :n], axis=(1, 2))
     rows = system.constraint_subspace * np.where(turning, 1.0, 1 / unit)
     orthonormal = np.linalg.qr(rows.T)[0].T
-    inertia = orthonormal @ inertia_from_mass_tensor(system.group, own_tensor) @ orthonormal.T
+    inertia = orthonormal @ inertia_from_mass_tensor(system.group, tensor) @ orthonormal.T
     least = float(np.linalg.eigvalsh(inertia)[0]) if len(inertia) else 1.0
-    spread = np.linalg.eigvalsh(own_tensor)
-    if n == N:
+    spread = np.linalg.eigvalsh(tensor)
+    if n == len(tensor):
         return (lambda s, c: (spread[-1] - spread[0]) / least * s / c), least
     if spread[0] < -1e-12 * spread[-1]:
         return (lambda s, _: np.full_like(s, np.inf)), least

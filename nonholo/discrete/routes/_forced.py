@@ -9,7 +9,7 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from operator import attrgetter
-from typing import Any, ClassVar, NoReturn, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -119,15 +119,6 @@ class AbstractForcedRoute(AbstractOuterRoute):
         if not np.isfinite(j).all():
             return np.full_like(m, np.nan)
         return m + free.encode(forced.to_canonical(forced.restrict_at(j, g)))
-
-    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
-        """Return the displacements that follow, one step from each state."""
-        return self.parts(states, np.ones(len(states)))[1]
-
-    def whole_steps(self, momenta: Any, g: Any) -> NoReturn:
-        """Refuse: what follows a momentum and a pose depends on the number of the step."""
-        del momenta, g
-        raise error("A step from states alone", "be of a system without forces", "Forced", "Use simulate.")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -254,6 +245,7 @@ def _in_python(
     forced: Forced, exact: list[Any], faults: dict[str, str]
 ) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
+    own: Any = forced.own_potential
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
@@ -266,9 +258,7 @@ def _in_python(
         del time, velocity
         out[0] = np.nan
         with note_fault(faults, "potential"):
-            out[0] = number_of(
-                "Forced(potential=...)", cast(Any, forced.own_potential), "Return U of a configuration.", g
-            )
+            out[0] = number_of("Forced(potential=...)", own, "Return U of a configuration.", g)
 
     return force, potential
 
