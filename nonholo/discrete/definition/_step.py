@@ -85,12 +85,13 @@ def _search(
     def is_certain(y: Array, m: Array) -> Array:
         return certificate(y, m, *facts)
 
-    end, at_fold, is_lost = _continue(lambda y, m: residual(y, m, *numbers), start, target, guess, is_certain)
-    y = end.iterate
+    end = _continue(lambda y, m: residual(y, m, *numbers), start, target, guess, is_certain)
+    y, far = end.iterate, jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
+    at_fold = (end.s < 1) & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
+    is_lost = (end.s < 1) & ~at_fold
     converged = end.converged & jnp.all(jnp.isfinite(y)) & jnp.all(jnp.isfinite(target))
     code = jnp.where(is_lost, int(Outcome.branch_unverified), int(Outcome.successful))
-    beyond = is_lost & (jnp.sum(end.root**2) > _FAR**2)
-    code = jnp.where(converged | beyond, code, int(Outcome.not_converged))
+    code = jnp.where(converged | (is_lost & far), code, int(Outcome.not_converged))
     code = jnp.where(at_fold, int(Outcome.no_real_branch), code)
     code = jnp.where(jnp.all(jnp.isfinite(target)), code, int(Outcome.nonfinite))
     code = jnp.where(converged & is_certain(y, target), int(Outcome.successful), code)
@@ -147,10 +148,8 @@ class _Path(NamedTuple):
     trial: Array
 
 
-def _continue(
-    residual: Residual, known_root: Root, target: Array, guess: Array | None, is_certain: Residual
-) -> tuple[_Path, Array, Array]:
-    """Return the end of the path, where its last root is corrected at s = 1, and whether it met a fold or was lost.
+def _continue(residual: Residual, known_root: Root, target: Array, guess: Array | None, is_certain: Residual) -> _Path:
+    """Return the end of the path, where its last root is corrected at s = 1.
 
     Beginning, path and end are one loop, so that the residual and its derivatives are compiled once.
     """
@@ -191,8 +190,7 @@ def _continue(
     nothing, no = jnp.zeros_like(root), jnp.asarray(False)
     begin = _Path(zero, _FIRST / 2 * one, root, nothing, zero, zero, root, root, jnp.asarray(-1), no, no)
     first = begin if guess is None else begin._replace(s=one, iterate=guess, count=jnp.asarray(0), trial=~no)
-    end = jax.lax.while_loop(is_open, advance, first)
-    return end, *_verdict(end)
+    return jax.lax.while_loop(is_open, advance, first)
 
 
 def _is_unfinished(path: _Path) -> Array:
@@ -205,14 +203,6 @@ def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
     over = (path.count > _CORRECTIONS) | path.converged | ~jnp.all(jnp.isfinite(path.iterate))
     fails = path.trial & over & ~(path.converged & certain)
     return jax.tree.map(lambda new, old: jnp.where(fails, new, old), begin, path)
-
-
-def _verdict(end: _Path) -> tuple[Array, Array]:
-    """Return whether a path has met a fold, or was lost."""
-    is_lost = end.s < 1
-    far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
-    at_fold = is_lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
-    return at_fold, is_lost & ~at_fold
 
 
 def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[Array, Array], tuple[Array, ...]]:

@@ -253,7 +253,7 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractCompile
         free, is_balanced = dataclasses.replace(whole, system=forced.system), whole.is_balanced
         if forced.slips:
             slide, hold = (dataclasses.replace(whole, system=each) for each in (forced.sliding, forced.holding))
-            return SlipRoute(make_route(slide, route_name), forced, make_route(hold, route_name), hold)
+            return SlipRoute(cast(Any, make_route(slide, route_name)), forced, make_route(hold, route_name), hold)
         if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")
             matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)
