@@ -11,7 +11,6 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._decoder import ClosedDisplacementDecoder, DisplacementDecoder
-from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, definition, equations_of, legendre, refuse_composition
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractCompiledRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
@@ -20,7 +19,6 @@ from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
 
-@pytree
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Discretization(Scheme, AbstractMotion):
     """A discretized system, made by `discretize`.

@@ -14,20 +14,67 @@ Steps of order 4, 6 and 8 are symmetric compositions of the step of order 2 (doc
 length $\gamma h$ takes the restricted momentum r to what the step of order 2 with time step $\gamma h$, of either sign,
 makes of it; its displacement is the principal one over r. Orbits keep the momentum and the chart of the first substep
 of each step.
+
+Systems, discretizations and routes are pytrees of JAX, registered when JAX is imported.
 """
 
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from nonholo.base.checks import choice, error, needs
-from nonholo.base.numerics import applied, identity_like
+from nonholo.base.numerics import applied, identity_like, keep_programs
 from nonholo.base.types import Array, Float, Inexact, read_only
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractSystem, System
+from nonholo.systems import SYSTEMS, AbstractSystem, Forced, Friction, Gravity, Linear, Slip, Spring, System, Widened
+
+_TREES: list[Any] = [*SYSTEMS, Forced, Friction, Gravity, Linear, Slip, Spring, Widened]
+
+
+class _FixedArray(NamedTuple):
+    """An array that is compared and hashed by its entries."""
+
+    entries: bytes
+    shape: tuple[int, ...]
+
+
+@functools.cache
+def register() -> None:
+    """Register systems, forces and schemes once: `leaves` are numbers, `structure` is static.
+
+    No check runs when a tree is rebuilt.
+    """
+    import jax
+
+    keep_programs()
+    for kind in (*_TREES, *Scheme.__subclasses__()):
+        names = kind.leaves, kind.structure
+        flatten, unflatten = functools.partial(_flatten, *names), functools.partial(_unflatten, kind, *names)
+        jax.tree_util.register_pytree_node(kind, flatten, unflatten)
+
+
+def _flatten(leaves: tuple[str, ...], static: tuple[str, ...], thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    constants = (getattr(thing, name) for name in static)
+    return tuple(getattr(thing, name) for name in leaves), tuple(_hashable(x) for x in constants)
+
+
+def _hashable(value: Any) -> Any:
+    return _FixedArray(value.tobytes(), value.shape) if isinstance(value, np.ndarray) else value
+
+
+def _from_hashable(value: Any) -> Any:
+    return np.frombuffer(value.entries).reshape(value.shape) if isinstance(value, _FixedArray) else value
+
+
+def _unflatten(kind: type, leaves: tuple[str, ...], static: tuple[str, ...], constants: Any, children: Any) -> Any:
+    thing = object.__new__(kind)
+    for name, value in (*zip(leaves, children, strict=True), *zip(static, map(_from_hashable, constants), strict=True)):
+        object.__setattr__(thing, name, value)
+    return thing
+
 
 Constraint = str | tuple[Callable[[Array], Array], ...]
 

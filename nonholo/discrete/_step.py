@@ -90,13 +90,13 @@ def _step_by_rule(discrete: Discretization, rule: branching.AbstractBranchRule, 
     frame = branching.frame_of("step(discrete=...)", discrete)
     full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
     canonical = system.to_canonical(momentum if full is None else system.restrict(full))
-    code, place = branching.first_place("step", discrete, frame, rule, canonical, full)
+    code, place = branching.first_place("step", frame, rule, canonical, full)
     after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
     multipliers = np.full(len(system.annihilator), np.nan)
     if place is not None:
-        code, following = branching.next_place(discrete, frame, rule, place)
+        code, following = branching.next_place(frame, rule, place)
         if code == 0:
-            now, W = (branching.displacement_at(discrete, frame, x.point) for x in (place, following))
+            now, W = (branching.displacement_at(frame, x.point) for x in (place, following))
             after = legendre(discrete, W - system.group.identity, "left")
             arriving = legendre(discrete, now - system.group.identity, "right")
             multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)

@@ -156,6 +156,7 @@ class Frame:
     r"""The way from a body in its canonical frame to its equations.
 
     Attributes:
+        discrete: The discretization of the body.
         axes: Columns are principal axes of B.
         stiffness: Eigenvalues of B over `inertia`.
         coupling: c in these axes over `inertia`.
@@ -167,6 +168,7 @@ class Frame:
         rows: Takes canonical momenta to those along the rows of the normal form; None where they are the same.
     """
 
+    discrete: Discretization
     axes: Float[np.ndarray, "k k"]
     stiffness: Float[np.ndarray, "k"]
     coupling: Float[np.ndarray, "k"]
@@ -271,7 +273,8 @@ def frame_of(where: str, discrete: Discretization) -> Frame:
     if np.linalg.norm(coupling) <= _BALANCED:
         coupling = np.zeros_like(coupling)
     lever = None if length is None else float(form.arm / length)
-    return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, form.offset, form.frame, form.frame_map)
+    place = form.offset, form.frame, form.frame_map
+    return Frame(discrete, axes, eigenvalues / unit, coupling, unit, length, lever, *place)
 
 
 _LONGEST = 0.1  # a predicted move per continuation step, on the sphere

@@ -307,12 +307,12 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
     """
     frame = frame_for("branch_tree", discrete)
     group = discrete.system.group
-    W, _ = checked_point("branch_tree(displacement=...)", discrete, frame, displacement)
+    W, _ = checked_point("branch_tree(displacement=...)", frame, displacement)
     generations = [np.array([W - group.identity], dtype=complex)]
     reality, parents = [np.array([True])], [np.array([-1])]
     first = 0
-    for _ in range(_checked_depth(discrete, frame, depth)):
-        X, is_real, index = _next_generation(discrete, frame, generations[-1], reality[-1])
+    for _ in range(_checked_depth(frame, depth)):
+        X, is_real, index = _next_generation(frame, generations[-1], reality[-1])
         parents.append(first + index)
         first += len(generations[-1])
         generations.append(X)
@@ -329,10 +329,10 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
     )
 
 
-def _checked_depth(discrete: Discretization, frame: AnyFrame, depth: Any) -> int:
+def _checked_depth(frame: AnyFrame, depth: Any) -> int:
     where = "branch_tree(depth=...)"
     depth = natural(where, depth, "Pass the number of generations, 0 for the root alone.")
-    images = frame.equations(np.zeros(len(discrete.system.constraint_subspace))).count
+    images = frame.equations(np.zeros(frame.discrete.system.rank)).count
     if depth > _MOST or images**depth > _MOST:
         deepest = int(np.log(_MOST) / np.log(images))
         got = f"{depth}, with {images}^{depth} images"
@@ -340,24 +340,23 @@ def _checked_depth(discrete: Discretization, frame: AnyFrame, depth: Any) -> int
     return depth
 
 
-def _next_generation(
-    discrete: Discretization, frame: AnyFrame, X: Array, is_real: Array
-) -> tuple[Array, Array, Int[np.ndarray, "G"]]:
+def _next_generation(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array, Int[np.ndarray, "G"]]:
     """Return the distinct images of displacements minus the identity, which are real, and the index of the parent."""
     if len(X) == 0:
         return X, is_real, np.zeros(0, dtype=np.int64)
-    images = [_images(discrete, frame, *node) for node in zip(X, is_real, strict=True)]
+    images = [_images(frame, *node) for node in zip(X, is_real, strict=True)]
     matrices, reality = (np.concatenate(column) for column in zip(*images, strict=True))
     parents = np.repeat(np.arange(len(X)), [len(each) for each, _ in images])
     first = _first_of_equals(matrices * frame.stretch)
     return matrices[first], reality[first], parents[first]
 
 
-def _images(discrete: Discretization, frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
-    r = discrete.system.restrict(legendre(discrete, X, "right"))
+def _images(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
+    system = frame.discrete.system
+    r = system.restrict(legendre(frame.discrete, X, "right"))
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real
-    roots = roots_over(discrete, frame, discrete.system.to_canonical(r))
+    roots = roots_over(frame, system.to_canonical(r))
     return roots.increments, np.array([root.is_real for root in roots.zeros], dtype=bool)
 
 

@@ -35,15 +35,13 @@ class Kick(NamedTuple):
     """A step of which all is known but its new displacement.
 
     Attributes:
-        discrete: The discretized system.
-        frame: The frame of its branches.
+        frame: The frame of the branches of the discretized system.
         point: The point over the present displacement.
         now: The equations that it solves.
         ahead: Those that the new one has to solve.
         momentum: The new canonical momentum along the constraint subspace.
     """
 
-    discrete: Discretization
     frame: Frame
     point: Float[np.ndarray, "m"]
     now: Equations
@@ -104,7 +102,7 @@ class Principal(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Return the verified principal root."""
-        return principal_point(kick.discrete, kick.frame, kick.momentum)
+        return principal_point(kick.frame, kick.momentum)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,7 +132,7 @@ class Extreme(AbstractBranchRule):
         """Choose by the norm; a tie is not decided."""
         roots, values = _values_after(kick)
         real = np.flatnonzero(values.is_real)
-        norms = self.sign * _values.momentum_sizes(kick.discrete, kick.frame, values.momentum[real])
+        norms = self.sign * _values.momentum_sizes(kick.frame, values.momentum[real])
         ties = real[norms <= norms.min(initial=np.inf) + _TIED * np.abs(norms).max(initial=0.0)]
         return _only(kick, roots, values, ties.tolist())
 
@@ -181,7 +179,7 @@ class Chosen(AbstractBranchRule):
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values_after(kick)
-        present = displacement_at(kick.discrete, kick.frame, kick.point)
+        present = displacement_at(kick.frame, kick.point)
         index = call("branch(branches, present)", self.function, values, present)
         if index is None:
             return _only(kick, roots, values, [])
@@ -211,21 +209,21 @@ def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> Ab
     return rule
 
 
-def principal_point(discrete: Discretization, frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
+def principal_point(frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
     """Return the outcome and the point over the verified principal displacement of a canonical momentum."""
-    code, X = _values.principal_increment(discrete, canonical)
-    return code, np.empty(0) if code != 0 else frame.point(X + discrete.system.group.identity)
+    code, X = _values.principal_increment(frame.discrete, canonical)
+    return code, np.empty(0) if code != 0 else frame.point(X + frame.discrete.system.group.identity)
 
 
-def displacement_at(discrete: Discretization, frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
+def displacement_at(frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
     """Return the displacement over a point, in the user's frame."""
-    system = discrete.system
+    system = frame.discrete.system
     return system.from_canonical_frame(frame.increment(x)) + system.group.identity
 
 
 def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
-    roots = _values.roots_over(kick.discrete, kick.frame, kick.momentum)
-    return roots, _values.branches_of(kick.discrete, kick.frame, kick.momentum, roots)
+    roots = _values.roots_over(kick.frame, kick.momentum)
+    return roots, _values.branches_of(kick.frame, kick.momentum, roots)
 
 
 def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: list[int]) -> Following:
@@ -253,11 +251,12 @@ class Place(NamedTuple):
 
 
 def first_place(
-    owner: str, discrete: Discretization, frame: Frame, rule: AbstractBranchRule, canonical: np.ndarray, demand: Any
+    owner: str, frame: Frame, rule: AbstractBranchRule, canonical: np.ndarray, demand: Any
 ) -> tuple[Outcome, Place | None]:
     """Return the state of a start: of a displacement, of a full momentum, or else the principal one."""
+    discrete = frame.discrete
     if demand is None:
-        code, point = principal_point(discrete, frame, canonical)
+        code, point = principal_point(frame, canonical)
         if code != 0:
             return code, None
         place = Place(point, canonical)
@@ -266,22 +265,22 @@ def first_place(
         k, x = len(frame.stiffness), frame.point(discrete.system.to_canonical_frame(W))
         rows = frame.equations(np.zeros(discrete.system.rank)).residual(x)[0]
         place = Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
-    rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
+    rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(frame, place.point))
     return Outcome.successful, place
 
 
-def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
+def next_place(frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
     """Return the outcome and the state that follows by a rule; the present one where none follows."""
-    h = discrete.time_step
+    h = frame.discrete.time_step
     now = frame.equations(h * place.momentum)
     momentum = place.momentum + frame.momentum(*now.kick(place.point)) / h
-    code, x = rule.following(Kick(discrete, frame, place.point, now, frame.equations(h * momentum), momentum))
+    code, x = rule.following(Kick(frame, place.point, now, frame.equations(h * momentum), momentum))
     return code, Place(x, momentum) if code == 0 else place
 
 
-def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:
+def goal_of(frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:
     """Return what the kernel of clear steps makes of a canonical momentum."""
-    now = frame.equations(float(discrete.time_step) * momentum)
+    now = frame.equations(float(frame.discrete.time_step) * momentum)
     return now.target if now.lever is None else np.append(now.target, now.push)
 
 
@@ -312,10 +311,10 @@ class RuleStepper(AbstractBodyStepper):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
         (reduced, pose), group, frame = first.numbers, self.motion.system.group, frame_of("simulate", self.motion)
-        code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
+        code, place = first_place("simulate", frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
-        goal = goal_of(self.motion, frame, place.momentum)
+        goal = goal_of(frame, place.momentum)
         now = _Now(place, goal, place.momentum, group.matrix_from_pose(pose), 0)
         return np.concatenate((place.momentum, frame.chart(place.point), pose, now.vector)), code
 
@@ -341,7 +340,7 @@ class RuleStepper(AbstractBodyStepper):
             good, step, place = good + count, now.step + count, Place(points[-1], ahead.momentum[-1])
             begin = now.begin
             if goal is None or step % often == 0:
-                goal, begin = goal_of(self.motion, frame, place.momentum), place.momentum
+                goal, begin = goal_of(frame, place.momentum), place.momentum
             g = matrices[-1] if step % often else group.matrix_from_pose(poses[-1])
             now = _Now(place, goal, begin, g, step)
         state[width:] = now.vector
@@ -357,7 +356,7 @@ class RuleStepper(AbstractBodyStepper):
             ahead, goals = self._clear_places(frame, now, most)
             if len(goals):
                 return Outcome.successful, ahead, goals[-1]
-        code, following = next_place(self.motion, frame, self.rule, now.place)
+        code, following = next_place(frame, self.rule, now.place)
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
 
@@ -367,7 +366,7 @@ class RuleStepper(AbstractBodyStepper):
         Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
         """
         h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
-        first, body = goal_of(self.motion, frame, now.begin), nearest_body(frame.equations(h * now.begin))
+        first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
         goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
         steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
         change = goals[:steps] - first
@@ -376,7 +375,7 @@ class RuleStepper(AbstractBodyStepper):
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
-        own, goal = state[self.width :], len(goal_of(self.motion, frame, state[:k]))
+        own, goal = state[self.width :], len(goal_of(frame, state[:k]))
         ends = np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
         point, goals, begin, g, (step,) = np.split(own, ends)
         place = Place(point.copy(), state[:k].copy())

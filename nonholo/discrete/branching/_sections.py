@@ -137,6 +137,7 @@ class Sections:
         directions: Orthonormal matrices that span the constraint subspace.
         slices: Their components of the inverse inertia times hP, by the entries of W - I.
         units: The same components of momenta.
+        discrete: The discretization of the system; None of no special one.
     """
 
     group: AbstractMatrixGroup
@@ -144,6 +145,7 @@ class Sections:
     directions: Float[np.ndarray, "k N*N"]
     slices: Float[np.ndarray, "k m"]
     units: Float[np.ndarray, "k k"]
+    discrete: Any = None
 
     def equations(self, momentum: Inexact[np.ndarray, "k"]) -> Section:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
@@ -272,4 +274,4 @@ def _sections(discrete: Discretization) -> Sections:
     units = R @ np.linalg.inv(system.constrained_inertia)
     entries = np.eye(group.size * n, group.size**2).reshape(-1, *stretch.shape) / stretch
     momenta = matrix_legendre(group, system.homogeneous_mass_tensor, entries, "left") @ E.T
-    return Sections(group, stretch, Q.T, units @ momenta.T, units)
+    return Sections(group, stretch, Q.T, units @ momenta.T, units, discrete)

@@ -21,7 +21,6 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.numerics import product_and_remainder
 from nonholo.base.types import Array, Float
-from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, Variety, definition, forbidden_matrices, free_rows, variety_of, weights
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, plain
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
@@ -177,7 +176,6 @@ def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple
     return of_motions, least
 
 
-@pytree
 @dataclasses.dataclass(frozen=True, eq=False)
 class DefinitionRoute(Scheme, AbstractCompiledRoute):
     """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX.
