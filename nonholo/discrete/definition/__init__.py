@@ -4,18 +4,13 @@ from nonholo.discrete._scheme import free_rows
 from nonholo.discrete.definition._precision import allow_float32, compile_double, in_double
 from nonholo.discrete.definition._rollout import Rollout, roll_out, step_residual, step_slopes
 from nonholo.discrete.definition._step import (
-    ON_LOCUS,
-    displacement_of,
     is_even,
     map_each,
     momenta_by_derivative,
-    momentum_of,
-    nearest_displacement,
     next_charts,
-    principal_of,
     sample_displacements,
     trace,
     traceable,
     value_and_slope,
 )
-from nonholo.discrete.definition._stepper import DefinitionStepper, leap, whole_steps_by_definition
+from nonholo.discrete.definition._stepper import DefinitionStepper, leap, step, whole_steps_by_definition
