@@ -4,15 +4,8 @@ import dataclasses
 from typing import Any
 
 from nonholo.base.checks import choice, error, flags, shown, step_counts, within_memory
-from nonholo.discrete import (
-    BranchRule,
-    Discretization,
-    RuleStepper,
-    as_discretization,
-    checked_rule,
-    has_frame,
-    refuse_composition,
-)
+from nonholo.discrete import BranchRule, Discretization, as_discretization, refuse_composition
+from nonholo.discrete.branching import RuleStepper, checked_rule, has_frame
 from nonholo.orbit import AbstractStepper
 from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._run import Run

@@ -2,16 +2,7 @@
 
 from nonholo.discrete.branching._equations import frame_of, has_frame
 from nonholo.discrete.branching._growth import BranchGrowth, BranchTree, branch_growth, branch_tree
-from nonholo.discrete.branching._rules import (
-    PRINCIPAL,
-    AbstractBranchRule,
-    BranchRule,
-    RuleStepper,
-    checked_rule,
-    displacement_at,
-    first_place,
-    next_place,
-)
+from nonholo.discrete.branching._rules import PRINCIPAL, BranchRule, RuleStepper, checked_rule, step_by_rule
 from nonholo.discrete.branching._values import (
     Branches,
     Landscape,

@@ -19,6 +19,7 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching import _values
 from nonholo.discrete.branching._equations import Equations, Frame, follow, frame_of, has_frame, nearest_body
 from nonholo.discrete.branching._roots import distance
@@ -276,6 +277,25 @@ def next_place(frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Ou
     momentum = place.momentum + frame.momentum(*now.kick(place.point)) / h
     code, x = rule.following(Kick(frame, place.point, now, frame.equations(h * momentum), momentum))
     return code, Place(x, momentum) if code == 0 else place
+
+
+def step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Take a step from a state that need not be on the principal branch; return what `step` returns."""
+    system = discrete.system
+    frame = frame_of("step(discrete=...)", discrete)
+    full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
+    canonical = system.to_canonical(momentum if full is None else system.restrict(full))
+    code, place = first_place("step", frame, rule, canonical, full)
+    after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
+    multipliers = np.full(len(system.annihilator), np.nan)
+    if place is not None:
+        code, following = next_place(frame, rule, place)
+        if code == 0:
+            now, W = (displacement_at(frame, x.point) for x in (place, following))
+            after = legendre(discrete, W - system.group.identity, "left")
+            arriving = legendre(discrete, now - system.group.identity, "right")
+            multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)
+    return after, W, multipliers, np.asarray(int(code))
 
 
 def goal_of(frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:

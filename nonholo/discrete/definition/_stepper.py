@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete import branching
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._scheme import Scheme, legendre, weights
+from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
 from nonholo.discrete.definition._precision import in_double
 from nonholo.discrete.routes import AbstractBodyStepper, Compact, ScalarRoute, ScalarStep
@@ -248,26 +248,7 @@ def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule =
         route = discrete.route
         scalar_step = jax.tree.map(_step.traceable, route.step) if isinstance(route, ScalarRoute) else None
         return in_double(_one_step, discrete, scalar_step, not rule.is_principal, value)
-    return _step_by_rule(discrete, rule, value)
-
-
-def _step_by_rule(discrete: Discretization, rule: branching.AbstractBranchRule, momentum: np.ndarray) -> StepResult:
-    """Take a step in NumPy, from a state that need not be on the principal branch."""
-    system = discrete.system
-    frame = branching.frame_of("step(discrete=...)", discrete)
-    full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
-    canonical = system.to_canonical(momentum if full is None else system.restrict(full))
-    code, place = branching.first_place("step", frame, rule, canonical, full)
-    after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
-    multipliers = np.full(len(system.annihilator), np.nan)
-    if place is not None:
-        code, following = branching.next_place(frame, rule, place)
-        if code == 0:
-            now, W = (branching.displacement_at(frame, x.point) for x in (place, following))
-            after = legendre(discrete, W - system.group.identity, "left")
-            arriving = legendre(discrete, now - system.group.identity, "right")
-            multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)
-    return StepResult(after, W, multipliers, np.asarray(int(code)))
+    return StepResult(*branching.step_by_rule(discrete, rule, value))
 
 
 @equinox.filter_jit
