@@ -17,6 +17,7 @@ from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
+_SAMPLES, _EVEN = 16, 1e-10  # of displacements; relative difference of values that counts as rounding
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -136,7 +137,10 @@ class Discretization(Scheme, AbstractMotion):
         """
         if not callable(self.difference):
             return True
-        return definition("discretize(difference=...)").is_even(self.difference, self.system.group)
+        group, map_each = self.system.group, definition("discretize(difference=...)").map_each
+        W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
+        there, back = map_each(self.difference, W), map_each(self.difference, group.inverse(W))
+        return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""

@@ -14,11 +14,11 @@ from nonholo.base.checks import array, choice, error, function, scale, shape_of,
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import (
+    WEIGHTS,
     Constraint,
     Difference,
     at_identity,
     checked_constraint,
-    checked_order,
     definition,
     legendre,
 )
@@ -88,7 +88,7 @@ def discretize(
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     lagrangian = _difference(system, difference)
     variety = _constraint(system, constraint)
-    discrete = Discretization(system, step, lagrangian, variety, checked_order(order, lagrangian, variety))
+    discrete = Discretization(system, step, lagrangian, variety, _order(order, lagrangian, variety))
     if discrete.forces is not None:
         _ = discrete.route  # refused here where there is none
     return discrete
@@ -120,6 +120,21 @@ def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
         remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
         raise error(where, "be defined on the group", got, remedy)
     return kind
+
+
+def _order(order: Any, difference: object, constraint: object) -> int:
+    """Refuse an order that is not offered, or not for this difference and constraint."""
+    where = "discretize(order=...)"
+    order = choice(where, order, (2, *WEIGHTS))
+    if order == 2:
+        return order
+    if callable(difference):
+        got = "a callable L_d(W), which has one time step built in"
+        raise error(where, "be 2", f"{order} with {got}", "Pass difference='matrix' or 'logarithmic'.")
+    if constraint not in ("skew", "exponential"):
+        got = f"{order} with a constraint that may not hold for W^-1 where it holds for W"
+        raise error(where, "be 2", got, "Pass constraint='skew' or 'exponential'.")
+    return order
 
 
 _SAMPLES = 16

@@ -235,8 +235,8 @@ def at_identity(
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):
         try:
-            own.append(of_jax.trace(function, group))
-            values[j], slopes[j] = of_jax.value_and_slope(own[j], group)
+            traced, values[j], slopes[j] = of_jax.trace(function, group)
+            own.append(traced)
         except Exception as failure:
             got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
             raise error(where, f"be {words[0]} of a JAX matrix", got, words[1]) from failure
@@ -355,21 +355,6 @@ def weights(order: int) -> Float[np.ndarray, "S"]:
     """
     half = np.array([float(text) for text in WEIGHTS.get(order, ())])
     return read_only(np.concatenate([half, [1 - 2 * half.sum()], half[::-1]]))
-
-
-def checked_order(order: Any, difference: object, constraint: object) -> int:
-    """Refuse an order that is not offered, or not for this difference and constraint."""
-    where = "discretize(order=...)"
-    order = choice(where, order, (2, *WEIGHTS))
-    if order == 2:
-        return order
-    if callable(difference):
-        got = "a callable L_d(W), which has one time step built in"
-        raise error(where, "be 2", f"{order} with {got}", "Pass difference='matrix' or 'logarithmic'.")
-    if constraint not in ("skew", "exponential"):
-        got = f"{order} with a constraint that may not hold for W^-1 where it holds for W"
-        raise error(where, "be 2", got, "Pass constraint='skew' or 'exponential'.")
-    return order
 
 
 def refuse_composition(where: str, discrete: Scheme, remedy: str) -> None:

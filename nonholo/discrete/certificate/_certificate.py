@@ -36,14 +36,8 @@ class Family(NamedTuple):
     norm: fmpz_poly
 
 
-class _Secular(NamedTuple):
-    r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
-
-    determinant: fmpz_poly
-    adjugate_c: list[fmpz_mat]
-    n1: fmpz_poly
-    n2: fmpz_poly
-    y: list[fmpz_poly]
+_Secular = tuple[fmpz_poly, list[fmpz_mat], fmpz_poly, fmpz_poly, list[fmpz_poly]]
+r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
 
 
 def families(problem: Problem) -> Iterator[Family]:
@@ -85,12 +79,12 @@ def _quadratic(problem: Problem) -> Iterator[Family]:
 
 def _at_the_coupling(problem: Problem) -> Iterator[Family]:
     r"""The roots of $N_1$ where r = c; $y = Gc$. Half-turns have $c\cdot z = 0$: one of a top with n = 3."""
-    secular = _secular(problem)
-    if secular.n1.gcd(secular.determinant).degree() > 0:
+    determinant, adjugate_c, n1, _, _ = _secular(problem)
+    if n1.gcd(determinant).degree() > 0:
         raise UncertainError("the restricted momentum equals the coupling, which is special to the axes of the body")
-    q = [secular.determinant, *_polynomials(secular.adjugate_c)]
+    q = [determinant, *_polynomials(adjugate_c)]
     norm = _dot(q, q)
-    finite = _without(secular.n1, norm)
+    finite = _without(n1, norm)
     yield Family(finite, q, norm)
     if problem.lever is None and len(problem.excess) == 2:
         if finite.degree() < 3:
@@ -100,8 +94,7 @@ def _at_the_coupling(problem: Problem) -> Iterator[Family]:
 
 
 def _generic(problem: Problem) -> Iterator[Family]:
-    secular = _secular(problem)
-    n1, n2, y = secular.n1, secular.n2, secular.y
+    _, _, n1, n2, y = _secular(problem)
     polynomial = n2 * (n1 - n2) - _dot(y, y)
     if polynomial == 0:
         raise UncertainError("the secular polynomial vanishes")
@@ -125,7 +118,7 @@ def _secular(problem: Problem) -> _Secular:
     n1 = determinant * _X + _polynomials(along * x for x in Ac)[0]
     n2 = determinant * problem.half - _polynomials(along * x for x in Ad)[0]
     sides = [x * d + y * c for x, y in zip_longest(n1.coeffs(), n2.coeffs(), fillvalue=0)]
-    return _Secular(determinant, Ac, n1, n2, _polynomials(_solve(B, sides)))
+    return determinant, Ac, n1, n2, _polynomials(_solve(B, sides))
 
 
 def _solve(B: fmpz_mat, sides: list[fmpz_mat]) -> list[fmpz_mat]:

@@ -220,10 +220,6 @@ def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[A
     return evaluate
 
 
-_SAMPLES = 16
-_EVEN = 1e-10  # relative difference of values that counts as rounding
-
-
 def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "count N N"]:
     """Draw displacements from the variety, the principal ones of velocities that turn by about 0.3 in a step."""
     system, rng = discrete.system, np.random.default_rng(0)
@@ -285,12 +281,6 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     return residual
 
 
-@compile_double
-def next_charts(discrete: Scheme, charts: Float[Array, "K m"], g: Float[Array, "K N N"]) -> Float[Array, "K m"]:
-    """Return the charts after one step to the principal value from each chart and pose."""
-    return jax.vmap(lambda *state: principal_displacement(discrete, *push(discrete, *state))[0])(charts, g)
-
-
 def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
     W = displacement_of(discrete, y)
@@ -298,13 +288,14 @@ def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 
-def trace(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> TracedFunction:
-    """Return a function of a matrix of a group with the numbers that it reads now."""
-    return TracedFunction(function, (jax.ShapeDtypeStruct(group.identity.shape, float),))
+def trace(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[TracedFunction, Any, Any]:
+    """Return a function of a matrix of a group with the numbers that it reads now; its value and slope at I."""
+    own = TracedFunction(function, (jax.ShapeDtypeStruct(group.identity.shape, float),))
+    return own, *_value_and_slope(own, group)
 
 
 @compile_double
-def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[Any, Any]:
+def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[Any, Any]:
     """Return a discrete Lagrangian and its derivative along the group at the identity."""
     return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(jnp.zeros(group.dim))
 
@@ -313,13 +304,6 @@ def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixG
 def map_each(function: Callable[[Array], Array], W: Float[Array, "K N N"]) -> Any:
     """Return the values of a function of one matrix at each of several."""
     return jax.vmap(function)(W)
-
-
-def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
-    """Return whether a function takes the same value at W and its inverse, tried at random elements."""
-    W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
-    there, back = map_each(function, W), map_each(function, group.inverse(W))
-    return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
 
 @compile_double

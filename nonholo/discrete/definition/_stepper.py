@@ -19,7 +19,7 @@ from nonholo.discrete import branching
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
-from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._precision import compile_double, in_double
 from nonholo.discrete.routes import AbstractBodyStepper, Compact, ScalarRoute, ScalarStep
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 from nonholo.systems import refuse_fixed_in_space
@@ -50,6 +50,12 @@ def whole_steps_by_definition(discrete: Scheme, momenta: np.ndarray, g: np.ndarr
     (after, poses), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
     bad, after = codes != Outcome.successful, applied(system.frame_map, after)
     return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, poses), codes
+
+
+@compile_double
+def next_charts(discrete: Scheme, charts: Float[Array, "K m"], g: Float[Array, "K N N"]) -> Float[Array, "K m"]:
+    """Return the charts after one step to the principal value from each chart and pose."""
+    return jax.vmap(lambda *state: _step.principal_displacement(discrete, *_step.push(discrete, *state))[0])(charts, g)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
