@@ -64,15 +64,8 @@ class ContinuousFlow(AbstractMotion):
     system: AbstractSystem
     span: tuple[float, float] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
     solution: Callable[[Array], States] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
-    conserves_energy: ClassVar[None] = None
-    route_name: ClassVar[None] = None
     time_step: ClassVar[None] = None
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "momentum", "restricted_velocity")
-
-    @property
-    def forces(self) -> Any:
-        """The system with its forces; None of a free one."""
-        return self.system.forces
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a flow with poses or without."""

@@ -88,11 +88,6 @@ class Discretization(Scheme, AbstractMotion):
         return First((of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), pose), W)
 
     @functools.cached_property
-    def forces(self) -> Forced | None:
-        """The system with its forces; None of a free one."""
-        return self.system.forces
-
-    @functools.cached_property
     def is_balanced(self) -> bool:  # type: ignore[override]
         """Whether the scheme is "energy"."""
         if self.forces is None:
