@@ -60,9 +60,14 @@ def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"
     $s = s_0 + |\gamma||x|\,t$, $\sinh s_0 = (x_0\cdot Qn)/|x_0\cdot n|$. The rates of two unit vectors give
     $\gamma$.
     """
-    lower = np.linalg.cholesky(system.constrained_inertia)
+    lower, body = np.linalg.cholesky(system.constrained_inertia), body_of(system)
+
+    def rates(x: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
+        rates, _, _ = momentum_rate(system.group, body, x @ lower.T)
+        return np.linalg.solve(lower, rates[..., None])[..., 0]
+
     x = np.linalg.solve(lower, reduced_momentum)
-    first, second = _rates(system, lower, np.eye(2))
+    first, second = rates(np.eye(2))
     pull = np.array([first[1], -second[0]])
     strength, level = np.hypot(*pull), np.hypot(*x)
     constant = Heteroclinic(reduced_momentum, np.zeros(2), np.float64(0), np.float64(0))
@@ -70,19 +75,12 @@ def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"
         return constant
     normal, unit = pull / strength, x / level
     # Taken from the rate: near the equilibria unit @ normal loses more digits.
-    across = _rates(system, lower, unit) @ _quarter_turn(unit) / strength
+    across = rates(unit) @ _quarter_turn(unit) / strength
     if abs(across) <= _SMALLEST:
         return constant
     start = np.arcsinh(unit @ _quarter_turn(normal) / abs(across))
     side = np.copysign(level, across)
     return Heteroclinic(side * lower @ normal, level * lower @ _quarter_turn(normal), start, strength * level)
-
-
-def _rates(
-    system: AbstractSystem, lower: Float[np.ndarray, "2 2"], x: Float[np.ndarray, "... 2"]
-) -> Float[np.ndarray, "... 2"]:
-    rates, _, _ = momentum_rate(system.group, body_of(system), x @ lower.T)
-    return np.linalg.solve(lower, rates[..., None])[..., 0]
 
 
 def _quarter_turn(x: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:

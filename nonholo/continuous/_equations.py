@@ -113,11 +113,6 @@ class ContinuousFlow(AbstractMotion):
         velocity = system.constraint_velocity(states.body_velocity, system.constraint_poses(states))
         return applied(system.annihilator, velocity)
 
-    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
-        """Refuse: a continuous motion has no displacements."""
-        got = f"chart coordinates {cayley} of a continuous flow"
-        raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")
-
 
 def spatial_velocity(
     group: AbstractMatrixGroup, S: Array, tensor: Array, r: Array, g: Float[Array, "... N N"]

@@ -96,12 +96,6 @@ class Discretization(Scheme, AbstractMotion):
         return self.forces.is_balanced(free.conserves_energy, self.order > 2)
 
     @property
-    def step_needs_pose(self) -> bool:
-        """Whether momenta after a step depend on the pose: with right-invariant constraints, and under some forces."""
-        forced = self.forces
-        return self.system.is_spatial or (forced is not None and bool(forced.terms or forced.function))
-
-    @property
     def route_name(self) -> str:
         """How stores call the route."""
         return self.route.name

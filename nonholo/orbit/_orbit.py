@@ -115,9 +115,13 @@ class AbstractMotion(Keeper, abc.ABC):
         """Return the displacements of whole steps from the states, in the user's frame; spatial ones of LR systems."""
         return self.displaced(states.canonical_chart)
 
-    @abc.abstractmethod
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
-        """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates."""
+        """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates.
+
+        Refused by default: a continuous motion has no displacements.
+        """
+        got = f"chart coordinates {cayley} of a continuous flow"
+        raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

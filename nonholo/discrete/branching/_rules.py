@@ -8,7 +8,7 @@ displacement variety, where nothing is special at angle $\pi$.
 import abc
 import dataclasses
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
@@ -22,7 +22,7 @@ from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching import _values
 from nonholo.discrete.branching._equations import Equations, Frame, follow, frame_of, has_frame, nearest_body
-from nonholo.discrete.branching._roots import distance
+from nonholo.discrete.branching._roots import Root, distance
 from nonholo.discrete.routes import AbstractBodyStepper
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 
@@ -41,6 +41,7 @@ class Kick(NamedTuple):
         now: The equations that it solves.
         ahead: Those that the new one has to solve.
         momentum: The new canonical momentum along the constraint subspace.
+        zeros: The roots over it, where they are known.
     """
 
     frame: Frame
@@ -48,6 +49,7 @@ class Kick(NamedTuple):
     now: Equations
     ahead: Equations
     momentum: Float[np.ndarray, "k"]
+    zeros: Sequence[Root] = ()
 
 
 Following: TypeAlias = tuple[Outcome, Float[np.ndarray, "m"]]
@@ -68,27 +70,38 @@ class AbstractBranchRule(abc.ABC):
     is_nearest: ClassVar[bool] = False
 
     def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
-        self._check_left_invariant(where, discrete)
-        if not has_frame(discrete):
-            asked = shown(getattr(self, "function", self.name))
+        """Refuse a discretization that does not have the rule: by default one of whose values not all are known.
+
+        Every discretization has the principal value, every left-invariant constraint the nearest one.
+        """
+        asked = shown(getattr(self, "function", self.name))
+        if discrete.system.is_spatial and not self.is_principal:
+            changing = "a right-invariant constraint, whose equations change with the pose from step to step"
+            raise error(where, "be 'principal'", f"{asked} for {changing}", "Leave it out.")
+        if not (self.is_principal or self.is_nearest or has_frame(discrete)):
             got = f"{asked} for {type(discrete.system).__name__}, of whose values not all are known"
             remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
             raise error(where, "be 'principal' or 'nearest'", got, remedy)
-
-    def _check_left_invariant(self, where: str, discrete: Discretization) -> None:
-        if discrete.system.is_spatial:
-            changing = "a right-invariant constraint, whose equations change with the pose from step to step"
-            got = f"{shown(getattr(self, 'function', self.name))} for {changing}"
-            raise error(where, "be 'principal'", got, "Leave it out.")
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
         del where, discrete, displacement
 
-    @abc.abstractmethod
     def following(self, kick: Kick) -> Following:
-        """Return the outcome and the point over the new displacement."""
+        """Return the outcome and the point over the new displacement: the one value that is chosen, or why none is."""
+        roots = _values.roots_over(kick.frame, kick.ahead)
+        values = _values.branches_of(kick.frame, kick.momentum, roots)
+        choices = self.choices(kick._replace(zeros=roots.zeros), values)
+        if not choices:
+            return Outcome.no_real_branch, kick.point
+        if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
+            return Outcome.branch_unverified, kick.point
+        return Outcome.successful, roots.zeros[choices[0]].point.real
+
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
+        """Return the numbers of the values that may be chosen, by default of all real ones."""
+        del kick
+        return np.flatnonzero(values.is_real).tolist()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,9 +110,6 @@ class Principal(AbstractBranchRule):
 
     name: str = "principal"
     is_principal: ClassVar[bool] = True
-
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Every discretization has it."""
 
     def following(self, kick: Kick) -> Following:
         """Return the verified principal root."""
@@ -113,10 +123,6 @@ class Nearest(AbstractBranchRule):
     name: str = "nearest"
     is_nearest: ClassVar[bool] = True
 
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Every left-invariant constraint has it."""
-        self._check_left_invariant(where, discrete)
-
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
         return follow(kick.now, kick.ahead, kick.point)
@@ -129,13 +135,11 @@ class Extreme(AbstractBranchRule):
     name: str
     sign: int
 
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Choose by the norm; a tie is not decided."""
-        roots, values = _values_after(kick)
         real = np.flatnonzero(values.is_real)
         norms = self.sign * _values.momentum_sizes(kick.frame, values.momentum[real])
-        ties = real[norms <= norms.min(initial=np.inf) + _TIED * np.abs(norms).max(initial=0.0)]
-        return _only(kick, roots, values, ties.tolist())
+        return real[norms <= norms.min(initial=np.inf) + _TIED * np.abs(norms).max(initial=0.0)].tolist()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -160,14 +164,13 @@ class Region(AbstractBranchRule):
             remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
             raise error(where, "have a start in the inner or the outer region", f"{self.name!r} and {high}", remedy)
 
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Choose by the region, then by continuation."""
-        roots, values = _values_after(kick)
         inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
-            nearest = _nearest_of(kick, roots)
+            nearest = _nearest_of(kick)
             inside = [nearest] if nearest in inside else inside
-        return _only(kick, roots, values, inside)
+        return inside
 
 
 @dataclasses.dataclass(frozen=True)
@@ -177,17 +180,16 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
 
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Ask the function, and refuse an answer that is no real value."""
-        roots, values = _values_after(kick)
         present = displacement_at(kick.frame, kick.point)
         index = call("branch(branches, present)", self.function, values, present)
         if index is None:
-            return _only(kick, roots, values, [])
+            return []
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
             remedy = "Choose among np.flatnonzero(branches.is_real), or return None."
             raise error("branch(branches, present)", "return the index of a real branch or None", shown(index), remedy)
-        return _only(kick, roots, values, [int(index)])
+        return [int(index)]
 
 
 PRINCIPAL = Principal()
@@ -222,24 +224,10 @@ def displacement_at(frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
     return system.from_canonical_frame(frame.increment(x)) + system.group.identity
 
 
-def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
-    roots = _values.roots_over(kick.frame, kick.momentum)
-    return roots, _values.branches_of(kick.frame, kick.momentum, roots)
-
-
-def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: list[int]) -> Following:
-    """Return the one value that is left, or why there is none."""
-    if not choices:
-        return Outcome.no_real_branch, kick.point
-    if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
-        return Outcome.branch_unverified, kick.point
-    return Outcome.successful, roots.zeros[choices[0]].point.real
-
-
-def _nearest_of(kick: Kick, roots: _values.Roots) -> int | None:
+def _nearest_of(kick: Kick) -> int | None:
     """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = follow(kick.now, roots.equations, kick.point)
-    distances = [distance(kick.now, end, root.point) for root in roots.zeros]
+    code, end = follow(kick.now, kick.ahead, kick.point)
+    distances = [distance(kick.now, end, root.point) for root in kick.zeros]
     best = int(np.argmin(distances))
     return best if code == 0 and distances[best] <= _values.SAME else None
 

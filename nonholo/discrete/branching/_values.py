@@ -169,13 +169,13 @@ class Branches:
 def values_over(frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
     canonical = frame.discrete.system.to_canonical(r)
-    return branches_of(frame, canonical, roots_over(frame, canonical))
+    return branches_of(frame, canonical, roots_over(frame, frame.equations(frame.discrete.time_step * canonical)))
 
 
 def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values of a step under forces over a restricted momentum in the user's frame."""
     canonical = node.frame.discrete.system.to_canonical(r)
-    roots = _roots_of(node.frame, node.equations(canonical))
+    roots = roots_over(node.frame, node.equations(canonical))
     values = branches_of(node.frame, canonical, roots, node.principal(canonical))
     return dataclasses.replace(values, region=np.full(len(values), ""))
 
@@ -188,12 +188,8 @@ class Roots(NamedTuple):
     increments: Inexact[np.ndarray, "B N N"]
 
 
-def roots_over(frame: AnyFrame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
-    """Return the roots over a canonical restricted momentum, real or complex."""
-    return _roots_of(frame, frame.equations(frame.discrete.time_step * canonical))
-
-
-def _roots_of(frame: AnyFrame, equations: Equations) -> Roots:
+def roots_over(frame: AnyFrame, equations: Equations) -> Roots:
+    """Return the roots of the equations of a restricted momentum, real or complex."""
     system, zeros = frame.discrete.system, roots_of(equations)
     increments = [system.from_canonical_frame(frame.increment(root.point.astype(complex))) for root in zeros]
     return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))

@@ -111,8 +111,9 @@ def roll_out(
     begin = _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing), none)
 
     def closed_step(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        def now() -> NodeState:
-            return _state_at(discrete, *at(begin._replace(m=m, g=g))[::2])
+        def now() -> NodeState:  # what a policy sees
+            r, _, place, _ = at(begin._replace(m=m, g=g))
+            return NodeState(place, discrete.system.directions(place) @ discrete.system.restricted_velocity(r, place))
 
         control = None if row is None else control_of(row, now)
         return step(m, g, guess, control)._replace(control=control)
@@ -124,11 +125,6 @@ def roll_out(
     pushes = _half_impulses(discrete, forces, states, nodes.control)
     potential = jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
     return _decode(discrete, nodes, states, demand, (pushes, potential), time)
-
-
-def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
-    """Return what a policy sees of momenta along the constraint and a pose."""
-    return NodeState(g, discrete.system.directions(g) @ discrete.system.restricted_velocity(r, g))
 
 
 def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...], rows: Array | None) -> Array:

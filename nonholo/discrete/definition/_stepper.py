@@ -71,8 +71,7 @@ class DefinitionStepper(AbstractBodyStepper):
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of momenta, chart coordinates and matrix entries."""
-        system = self.motion.system
-        return system.rank, len(self.motion.variety.chart), system.group.size**2
+        return self.motion.route.sizes
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Solve for the principal displacement, or take the one that is demanded of a run to the nearest value."""

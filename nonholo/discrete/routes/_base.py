@@ -38,7 +38,9 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         """Why a step has no parts; None if it has."""
         if self.branch != "principal":
             return f"branch {self.branch!r}: only the principal branch has them"
-        if self.motion.step_needs_pose and not self.with_poses:
+        forced = self.motion.forces
+        needs_pose = self.motion.system.is_spatial or (forced is not None and bool(forced.terms or forced.function))
+        if needs_pose and not self.with_poses:  # of right-invariant constraints, and under some forces
             return "a step that depends on the pose, without reconstruct=True"
         return None
 

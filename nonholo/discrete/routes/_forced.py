@@ -153,11 +153,9 @@ class FunctionRoute(AbstractForcedRoute):
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
-        failure, m_half = None, np.array(momenta)
-        try:  # the midpoint rule of a half impulse may fail
-            m_half = self._after_half(0, 0, momenta, pose)
-        except OutcomeError:
-            failure = Outcome.no_half_impulse
+        failure, m_half = Outcome.no_half_impulse, np.array(momenta)
+        with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
+            failure, m_half = None, self._after_half(0, 0, momenta, pose)
         code, chart, state = self.free.set_out(m_half, np.array(pose))
         return failure or code, chart, np.append(state, 0.0)
 
@@ -241,9 +239,7 @@ def functions_of(forced: Forced, exact: list[Any], faults: dict[str, str]) -> tu
     return force, 0 if forced.own_potential is None else function_of(forced.own_potential, shape, 1)
 
 
-def _in_python(
-    forced: Forced, exact: list[Any], faults: dict[str, str]
-) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, exact: list[Any], faults: dict[str, str]) -> tuple[Any, Any]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
     own: Any = forced.own_potential
 
