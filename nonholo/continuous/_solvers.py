@@ -21,7 +21,7 @@ from nonholo.continuous import _series
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._forced import has_series_under, heads, quadratic_under, under_forces
 from nonholo.continuous._series import GUARD, Problem, Solved, States, power_of_two
-from nonholo.kernels import Arrowhead, Quadratic, solve_arrowhead, solve_members
+from nonholo.kernels import Arrowhead, solve_arrowhead, solve_members
 from nonholo.orbit import looked_at, turned_near
 from nonholo.systems import AbstractSystem, NormalForm, System
 
@@ -85,22 +85,6 @@ def has_series(system: AbstractSystem, span: float) -> bool:
     return not system.is_spatial and _series.has_compact_rates(system.group) and is_linear
 
 
-def _equations(
-    system: AbstractSystem, inertias: Float[np.ndarray, "m dim dim"]
-) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"], Float[np.ndarray, "m k"]]:
-    """Return the equations of members, and their velocities, factors and units of momenta; those of one are known."""
-    group, S = system.group, system.canonical.constraint_subspace
-    velocities, torques, sizes = _series.body_numbers(group, S, inertias)
-    if len(inertias) == 1:
-        f = _series.quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
-        return f, f.velocities[None], f.factors, sizes
-    is_nonzero = (torques != 0).any(axis=0)
-    f = _series.body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
-    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(is_nonzero, -1, 0)]  # row by row of the equations
-    factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
-    return f, velocities, factors, sizes
-
-
 def members_by_series(
     system: AbstractSystem,
     inertias: Float[np.ndarray, "m dim dim"],
@@ -121,8 +105,16 @@ def members_by_series(
         tolerance: Relative error of a step.
         stop: Ends the work when it becomes true.
     """
-    group, k = system.group, momenta.shape[1]
-    f, velocities, factors, sizes = _equations(system, inertias)
+    group, S, k = system.group, system.canonical.constraint_subspace, momenta.shape[1]
+    velocities, torques, sizes = _series.body_numbers(group, S, inertias)
+    if len(inertias) == 1:  # its equations are known
+        f = _series.quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
+        velocities, factors = f.velocities[None], f.factors
+    else:
+        is_nonzero = (torques != 0).any(axis=0)
+        f = _series.body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
+        own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(is_nonzero, -1, 0)]  # row by row of the equations
+        factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
     if system.forces is None:
         head = momenta / sizes
         units = _series.power_of_two((velocities @ head[..., None])[..., 0] * sizes)

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.integrate
 
 from nonholo.analysis import Convergence, compare, invariants
-from nonholo.base.checks import count, flags, generator, instance, needs, positive, refuse_given
+from nonholo.base.checks import count, flags, generator, instance, positive, refuse_given
 from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
@@ -188,8 +188,7 @@ class OrbitSamples:
 
 def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:
     """Return the values of a function of one JAX matrix; JAX loads slowly, and only callables need it."""
-    with needs("jax", "check_discretization(...) with functions"):
-        from nonholo.discrete.definition import map_each
+    from nonholo.discrete.definition import map_each
 
     return map_each(function, W.reshape(-1, *W.shape[-2:])).reshape(W.shape[:-2])
 

@@ -89,14 +89,14 @@ class AbstractBranchRule(abc.ABC):
 
     def following(self, kick: Kick) -> Following:
         """Return the outcome and the point over the new displacement: the one value that is chosen, or why none is."""
-        roots = _values.roots_over(kick.frame, kick.ahead)
-        values = _values.branches_of(kick.frame, kick.momentum, roots)
-        choices = self.choices(kick._replace(zeros=roots.zeros), values)
+        _, zeros, X = _values.roots_over(kick.frame, kick.ahead)
+        values = _values.branches_of(kick.frame, kick.momentum, (kick.ahead, zeros, X))
+        choices = self.choices(kick._replace(zeros=zeros), values)
         if not choices:
             return Outcome.no_real_branch, kick.point
         if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
             return Outcome.branch_unverified, kick.point
-        return Outcome.successful, roots.zeros[choices[0]].point.real
+        return Outcome.successful, zeros[choices[0]].point.real
 
     def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Return the numbers of the values that may be chosen, by default of all real ones."""
@@ -168,8 +168,11 @@ class Region(AbstractBranchRule):
         """Choose by the region, then by continuation."""
         inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
-            nearest = _nearest_of(kick)
-            inside = [nearest] if nearest in inside else inside
+            code, end = follow(kick.now, kick.ahead, kick.point)
+            distances = [distance(kick.now, end, root.point) for root in kick.zeros]
+            best = int(np.argmin(distances))
+            if code == 0 and distances[best] <= _values.SAME and best in inside:
+                return [best]
         return inside
 
 
@@ -222,14 +225,6 @@ def displacement_at(frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
     """Return the displacement over a point, in the user's frame."""
     system = frame.discrete.system
     return system.from_canonical_frame(frame.increment(x)) + system.group.identity
-
-
-def _nearest_of(kick: Kick) -> int | None:
-    """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = follow(kick.now, kick.ahead, kick.point)
-    distances = [distance(kick.now, end, root.point) for root in kick.zeros]
-    best = int(np.argmin(distances))
-    return best if code == 0 and distances[best] <= _values.SAME else None
 
 
 class Place(NamedTuple):

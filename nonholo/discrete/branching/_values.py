@@ -7,8 +7,7 @@ is shared with `analysis`, which names all of them. Reference: [fedorov-zenkov-2
 """
 
 import dataclasses
-from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 import scipy  # its parts load on first use
@@ -180,19 +179,15 @@ def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     return dataclasses.replace(values, region=np.full(len(values), ""))
 
 
-class Roots(NamedTuple):
-    """The roots of the equations of a restricted momentum, and the displacements minus the identity over them."""
-
-    equations: Equations
-    zeros: list[Root]
-    increments: Inexact[np.ndarray, "B N N"]
+Roots = tuple[Equations, list[Root], Inexact[np.ndarray, "B N N"]]
+"""The equations of a restricted momentum, their roots, and the displacements minus the identity over them."""
 
 
 def roots_over(frame: AnyFrame, equations: Equations) -> Roots:
     """Return the roots of the equations of a restricted momentum, real or complex."""
     system, zeros = frame.discrete.system, roots_of(equations)
     increments = [system.from_canonical_frame(frame.increment(root.point.astype(complex))) for root in zeros]
-    return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
+    return equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape)
 
 
 def branches_of(frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots, principal: Any = None) -> Branches:
@@ -259,7 +254,11 @@ def _index_of(frame: AnyFrame, code: int, increment: Array, X: np.ndarray, is_re
 def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum, certified where that can be decided."""
     discrete, canonical = frame.discrete, frame.discrete.system.to_canonical(r)
-    balls = _enclosures(owner)(discrete, canonical) if has_frame(discrete) else _FOLLOWED
+    balls: Any = _FOLLOWED
+    if has_frame(discrete):
+        with needs("certify", f"{owner}(certify=...)"):
+            from nonholo.discrete.certificate import enclosures
+        balls = enclosures(discrete, canonical)
     if isinstance(balls, str):
         return dataclasses.replace(values_over(frame, r), uncertified=balls)
     (increment, radius, *facts), system = balls, discrete.system
@@ -268,19 +267,12 @@ def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Br
         x = frame.point(W.real if real else W)
         zeros.append(Root(x if x[0].real >= 0 else -x, int(m), bool(real)))
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
-    roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order])
+    roots = frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order]
     values = branches_of(frame, canonical, roots)
     return dataclasses.replace(values, certified=True, radius=radius[order])
 
 
 _FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"
-
-
-def _enclosures(owner: str) -> Callable[..., Any]:
-    """Import the certificate, or name the extra that it needs."""
-    with needs("certify", f"{owner}(certify=...)"):
-        from nonholo.discrete.certificate import enclosures
-    return enclosures
 
 
 _ROUNDING = 1e-13
