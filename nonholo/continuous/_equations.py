@@ -104,8 +104,7 @@ class ContinuousFlow(AbstractMotion):
             force = spatial_reaction(system, states.configuration, states.body_velocity)
         else:
             force = reaction(system.group, body_of(system), states.restricted_momentum)
-        whole = forced.system if forced is not None else system
-        return applied(np.linalg.pinv(whole.annihilator).T, force)
+        return applied(np.linalg.pinv(system.inside.annihilator).T, force)
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         """Return the forbidden velocities."""

@@ -259,8 +259,7 @@ class Discretization(Scheme, AbstractMotion):
             arriving = arriving + self._impulses(before, 0) + self._impulses(after, 0)
         elif self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
-        whole = self.system if self.forces is None else self.forces.system
-        group, to_multipliers = self.system.group, np.linalg.pinv(whole.annihilator).T
+        group, to_multipliers = self.system.group, np.linalg.pinv(self.system.inside.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration

@@ -216,23 +216,19 @@ class Frame:
 
     def increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         """Return the canonical displacements minus the identity, without cancellation."""
-        X = self._own_increment(x)
-        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
-
-    def _own_increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         k = len(self.stiffness)
         z0, z = x[..., :1], applied(self.axes, x[..., 1 : k + 1])
         if self.length is None:
             q, sign = np.concatenate([z, z0], axis=-1), np.append(-np.ones(k), 1.0)
             X = 2 * (q[..., :, None] * q[..., None, :]) * sign
             X[..., -1, -1] = -2 * (z * z).sum(axis=-1)
-            return X
-        q, sign = np.concatenate([z0, -z], axis=-1), np.append(1.0, -np.ones(k))
-        X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
-        X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
-        X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
-        X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
-        return X
+        else:
+            q, sign = np.concatenate([z0, -z], axis=-1), np.append(1.0, -np.ones(k))
+            X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
+            X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
+            X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
+            X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
+        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:
         """Return the point over a canonical displacement of the variety, real or complex."""

@@ -311,7 +311,14 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
     generations = [np.array([W - group.identity], dtype=complex)]
     reality, parents = [np.array([True])], [np.array([-1])]
     first = 0
-    for _ in range(_checked_depth(frame, depth)):
+    where = "branch_tree(depth=...)"
+    depth = natural(where, depth, "Pass the number of generations, 0 for the root alone.")
+    images = frame.equations(np.zeros(discrete.system.rank)).count
+    if depth > _MOST or images**depth > _MOST:
+        deepest = int(np.log(_MOST) / np.log(images))
+        got = f"{depth}, with {images}^{depth} images"
+        raise error(where, f"keep the tree below {_MOST} images", got, f"Pass depth={deepest} or less.")
+    for _ in range(depth):
         X, is_real, index = _next_generation(frame, generations[-1], reality[-1])
         parents.append(first + index)
         first += len(generations[-1])
@@ -327,17 +334,6 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
         is_real=np.concatenate(reality),
         counts=counts,
     )
-
-
-def _checked_depth(frame: AnyFrame, depth: Any) -> int:
-    where = "branch_tree(depth=...)"
-    depth = natural(where, depth, "Pass the number of generations, 0 for the root alone.")
-    images = frame.equations(np.zeros(frame.discrete.system.rank)).count
-    if depth > _MOST or images**depth > _MOST:
-        deepest = int(np.log(_MOST) / np.log(images))
-        got = f"{depth}, with {images}^{depth} images"
-        raise error(where, f"keep the tree below {_MOST} images", got, f"Pass depth={deepest} or less.")
-    return depth
 
 
 def _next_generation(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array, Int[np.ndarray, "G"]]:

@@ -400,7 +400,11 @@ def branches(
         X = _inverse(where, frame, momentum)
     else:
         r = _restricted(where, discrete, momentum)
-        X = _increment(where, discrete, values_over(frame, r) if node is None else values_at(node, r))
+        values = values_over(frame, r) if node is None else values_at(node, r)
+        if values.principal is None:
+            remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
+            raise error(where, "have a principal displacement", "components that it does not reach", remedy)
+        X = values.displacement[values.principal].real - discrete.system.group.identity
     if node is not None:
         return values_at(*node.following(X))
     r = discrete.system.restrict(legendre(discrete, X, "right"))
@@ -453,9 +457,8 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
         >>> fold_distance(sleigh, np.eye(3)), round(fold_distance(sleigh, quarter), 12)
         (1.0, 0.0)
     """
-    where = "fold_distance(displacement=...)"
     frame = frame_for("fold_distance", discrete)
-    _, x = checked_point(where, frame, displacement)
+    _, x = checked_point("fold_distance(displacement=...)", frame, displacement)
     return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
@@ -473,14 +476,6 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
 def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
     k = len(discrete.system.constraint_subspace)
     return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
-
-
-def _increment(where: str, discrete: Discretization, values: Branches) -> Float[np.ndarray, "N N"]:
-    """Return the principal displacement minus the identity."""
-    if values.principal is None:
-        remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
-        raise error(where, "have a principal displacement", "components that it does not reach", remedy)
-    return values.displacement[values.principal].real - discrete.system.group.identity
 
 
 def _inverse(where: str, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:

@@ -127,8 +127,7 @@ class DefinitionStepper(AbstractBodyStepper):
         return system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
 
     def _take(self, number: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
-        nearest = self.branch == "nearest"
-        return in_double(_advance, self.motion, nearest, np.int64(number), np.int64(steps), r, y, g)
+        return in_double(_advance, self.motion, self.branch == "nearest", np.int64(number), np.int64(steps), r, y, g)
 
     def _matrix(self, rows: np.ndarray) -> np.ndarray:
         size = self.motion.system.group.size

@@ -428,18 +428,13 @@ def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     if poses is None:
         after, _, _ = route.step_each((momenta, charts, None), charts, principal_only=False)
         returning = (-after, -charts, None)
-    else:
-        returning = (-momenta, -charts, _two_ahead(states, charts))
+    else:  # from two steps after each state a right-invariant constraint is run back
+        U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(charts)
+        returning = (-momenta, -charts, np.ascontiguousarray((V @ U @ states.configuration).reshape(poses.shape)))
     back, charts_back, behind = route.step_each(returning, -cayley, principal_only=False)
     gaps = _largest(back + momenta) / _largest(momenta)
     distances = np.maximum(_largest(charts_back + cayley) / _largest(cayley), gaps)
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
-
-
-def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K size"]:
-    """Return the poses two steps after each state, from where a right-invariant constraint is run back."""
-    U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(following)
-    return np.ascontiguousarray((V @ U @ states.configuration).reshape(len(states), states.system.group.size**2))
 
 
 def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:

@@ -72,7 +72,8 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     forbidden = forbidden_matrices(group, annihilator) / motions
     completion = _completion(forbidden, directions)
     own_tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
-    mass = _mass_unit(own_tensor)
+    # a power of 2 changes no digit, and one of 2^32 no pivot for a body of ordinary mass, whose bits stay
+    mass = float(np.exp2(_BITS * np.round(np.log2(np.abs(own_tensor).max(initial=1e-300)) / _BITS)))
     tensor, directions, form, inverse_form = _in_form(group, own_tensor / mass, directions)
     spatial = system.is_spatial
     pairings, remainders = product_and_remainder(directions, tensor)
@@ -140,15 +141,6 @@ def _length_unit(system: AbstractSystem) -> float:
     return float(np.sqrt(np.trace(tensor[:n, :n]) / tensor[n, n]))
 
 
-def _mass_unit(tensor: np.ndarray) -> float:
-    """Return the mass that makes a tensor comparable with the constraint; one for a body of ordinary mass.
-
-    A power of 2 changes no digit, and one of 2^32 no pivot for a body of ordinary mass, whose bits stay.
-    """
-    exponent = np.log2(np.abs(tensor).max(initial=1e-300))
-    return float(np.exp2(_BITS * np.round(exponent / _BITS)))
-
-
 def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple[Callable[..., np.ndarray], float]:
     r"""Return the Lipschitz constant of $\phi$, by sine and cosine of the largest angle, and the least inertia.
 
@@ -195,13 +187,11 @@ class DefinitionRoute(Scheme, AbstractCompiledRoute):
 
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps by the definition."""
-        owner = "simulate(...) of a step that is not compiled"
-        return definition(owner).DefinitionStepper(motion, with_poses, branch)
+        return definition("simulate(...) of a step that is not compiled").DefinitionStepper(motion, with_poses, branch)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
-        next_charts = definition("A step that is not compiled").next_charts
-        return next_charts(self, states.canonical_chart, step_poses(states))
+        return definition("A step that is not compiled").next_charts(self, states.canonical_chart, step_poses(states))
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart, and a state one step ahead."""

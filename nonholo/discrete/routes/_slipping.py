@@ -215,8 +215,7 @@ class SlipRoute(AbstractForcedRoute):
                 ahead = self.begin(after, end, time, int(one.step[0]) + int(fraction))
                 chart = ahead.chart if ahead.code == 0 else chart
             rows.append((after, chart, end))
-        momenta, charts, end = (np.array(column) for column in zip(*rows, strict=True))
-        return momenta, charts, end
+        return cast(Compact, tuple(np.array(column) for column in zip(*rows, strict=True)))
 
     def _part(self, one: Orbit, pose: np.ndarray, fraction: float) -> Any:  # type: ignore[override]
         """Return momenta and pose after a fraction of one step, which is of the kind of the whole."""
