@@ -78,10 +78,10 @@ def test_the_principal_rule_on_the_sphere_steps_as_the_compiled_run(discrete: nh
 
 @pytest.mark.parametrize("name", ["principal", "nearest", "smallest", "largest", "inner", "outer"])
 def test_a_rule_bears_its_name(name: str) -> None:
-    """One object a name; orbits record it, and only those that compare values need them all."""
+    """One object a name; orbits record it, and the rules but for two need all values."""
     rule = branch_rule("test", name)
     assert (rule.name, rule.is_principal) == (name, name == "principal")
-    assert rule.needs_all_values == (name not in ("principal", "nearest"))
+    assert rule.is_nearest == (name == "nearest")
 
 
 def test_nearest_follows_any_real_value() -> None:
