@@ -38,21 +38,21 @@ _FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179
 Residual = Callable[[Array, Array], Array]
 Root = tuple[Float[Array, "m"], Float[Array, "k"]]
 """A root and its target."""
-Guess = Float[Array, "m"] | None
 
 
-def principal_root(
-    residual: Residual, target: Array, unknowns: int, certificate: Residual | None = None, guess: Guess = None
+def followed_root(
+    residual: Residual, start: Root, target: Array, certificate: Residual | None = None, guess: Array | None = None
 ) -> tuple[Float[Array, "m"], Array]:
-    r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
+    r"""Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
 
-    The steps in s shrink where the corrector moves far from the tangent or the sign of the Jacobian determinant would
-    change, at a fold. Derivatives are those of the implicit function, not of the iteration.
+    The principal one is that which (0, 0) reaches along s target, 0 <= s <= 1. The steps in s shrink where the
+    corrector moves far from the tangent or the sign of the Jacobian determinant would change, at a fold. Derivatives
+    are those of the implicit function, not of the iteration.
 
     Args:
-        residual: A function of y and the momenta, zero at (0, 0).
+        residual: A function of y and the momenta, zero at the start.
+        start: A root and its momenta.
         target: The momenta.
-        unknowns: Number m of components of y.
         certificate: Whether a root is certainly the principal one, by the root alone.
         guess: Where Newton's method may look first; what it finds there needs the certificate.
 
@@ -60,20 +60,14 @@ def principal_root(
         The root and the outcome as an integer array. Where that is not successful the root is any finite number, with
         some finite derivative along all that the residual depends on.
     """
-    nothing = jnp.zeros(unknowns, target.dtype), jnp.zeros_like(target)
-    return followed_root(residual, nothing, target, certificate, guess)
-
-
-def followed_root(
-    residual: Residual, start: Root, target: Array, certificate: Residual | None = None, guess: Guess = None
-) -> tuple[Float[Array, "m"], Array]:
-    """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
-
-    As `principal_root`, from a start of the caller's: a root and its momenta.
-    """
     residual, numbers = jax.closure_convert(residual, *start)
     certificate, facts = jax.closure_convert(certificate or (lambda _y, _m: jnp.asarray(False)), *start)
     return _search(residual, certificate, numbers, facts, start, target, guess)
+
+
+def _at_rest(unknowns: int, target: Array) -> Root:
+    """Return the root of no motion, for momenta like some others."""
+    return jnp.zeros(unknowns, target.dtype), jnp.zeros_like(target)
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0, 1))
@@ -260,7 +254,7 @@ def restricted(discrete: Scheme, momentum: Array, g: Array) -> Array:
 
 def principal_displacement(discrete: Scheme, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
     """Return chart coordinates of the principal displacement with these momenta along d, and the outcome."""
-    return principal_root(equations_at(discrete, g), r, discrete.variety.chart.shape[0])
+    return followed_root(equations_at(discrete, g), _at_rest(len(discrete.variety.chart), r), r)
 
 
 def nearest_displacement(discrete: Scheme, y: Float[Array, "m"], r: Float[Array, "k"]) -> tuple[Array, Array]:
@@ -337,7 +331,7 @@ def kernel_root(body: kernels.Body, m: Float[Array, "2"], guess: Array | None = 
     def residual(y: Array, m: Array) -> Array:
         return jnp.stack(kernels.residual(body, *m, *y))
 
-    return principal_root(residual, m, 2, lambda y, m: kernels.is_certain(body, *m, *y), guess)
+    return followed_root(residual, _at_rest(2, m), m, lambda y, m: kernels.is_certain(body, *m, *y), guess)
 
 
 def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:

@@ -251,8 +251,7 @@ class SlipStepper(AbstractBodyStepper):
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of canonical momenta, chart coordinates and pose entries."""
-        momenta, charts, _ = self.route.free.sizes
-        return momenta, charts, self.route.body.group.pose_size
+        return *self.route.free.sizes[:2], self.route.body.group.pose_size
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
