@@ -28,10 +28,12 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
     Attributes:
         motion: The discretization.
         with_poses: Whether poses are saved.
+        sizes: Numbers of momenta, chart coordinates and pose entries that a row holds.
     """
 
     motion: Any
     with_poses: bool
+    sizes: ClassVar[Any]
 
     @property
     def part_refused(self) -> str | None:
@@ -45,11 +47,6 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         return None
 
     in_threads = False
-
-    @property
-    @abc.abstractmethod
-    def sizes(self) -> tuple[int, int, int]:
-        """Numbers of momenta, chart coordinates and pose entries that a row holds."""
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
@@ -146,10 +143,16 @@ class AbstractCompiledRoute(abc.ABC):
     Attributes:
         system: The system.
         time_step: h.
+        name: Its name in stores; a composition has that of what is composed.
+        body: The body as the kernel knows it, a `kernels.AnyBody`; made once.
+        scale: The factor to the momenta of the kernel.
     """
 
     system: System
     time_step: Array
+    name: str
+    body: Any
+    scale: Array
     order: int = 2
     """Of the steps that it takes: 2, or that of a composition."""
     is_scalar: ClassVar[bool] = False
@@ -158,21 +161,6 @@ class AbstractCompiledRoute(abc.ABC):
     """Whether it carries a pose along even where none is kept."""
     part_needs_pose: ClassVar[bool] = False
     """Whether parts of its steps do."""
-
-    @property
-    @abc.abstractmethod
-    def name(self) -> str:
-        """Its name in stores; a composition has that of what is composed."""
-
-    @property
-    @abc.abstractmethod
-    def body(self) -> Any:
-        """The body as the kernel knows it, a `kernels.AnyBody`; made once."""
-
-    @property
-    @abc.abstractmethod
-    def scale(self) -> Array:
-        """The factor to the momenta of the kernel."""
 
     @property
     def single(self) -> "AbstractCompiledRoute":

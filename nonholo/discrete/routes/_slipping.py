@@ -10,6 +10,7 @@ Reference: docs/theory/forces.md, Theorem 18.4.
 
 import dataclasses
 import functools
+from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -63,7 +64,7 @@ class SlipRoute(AbstractForcedRoute):
 
     Attributes:
         free: The route of steps that slide, but for the friction of the grip.
-        hold: The route of steps that hold.
+        hold: The route of steps that hold; its name is that of both.
         holding: The discretization of these.
     """
 
@@ -73,10 +74,7 @@ class SlipRoute(AbstractForcedRoute):
     needs_pose: ClassVar[bool] = True  # type: ignore[override]
     compiled_route: ClassVar[None] = None  # type: ignore[override]
 
-    @property
-    def name(self) -> str:  # type: ignore[override]
-        """The name of the route of steps that hold."""
-        return self.hold.name
+    name = property(attrgetter("hold.name"))
 
     @functools.cached_property
     def body(self) -> Widened:
