@@ -235,8 +235,8 @@ def at_identity(
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):
         try:
-            traced, values[j], slopes[j] = of_jax.trace(function, group)
-            own.append(traced)
+            each, values[j], slopes[j] = of_jax.trace(function, group)
+            own.append(each)
         except Exception as failure:
             got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
             raise error(where, f"be {words[0]} of a JAX matrix", got, words[1]) from failure

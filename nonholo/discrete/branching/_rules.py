@@ -74,12 +74,12 @@ class AbstractBranchRule(abc.ABC):
 
         Every discretization has the principal value, every left-invariant constraint the nearest one.
         """
-        asked = shown(getattr(self, "function", self.name))
+        rule = shown(getattr(self, "function", self.name))
         if discrete.system.is_spatial and not self.is_principal:
             changing = "a right-invariant constraint, whose equations change with the pose from step to step"
-            raise error(where, "be 'principal'", f"{asked} for {changing}", "Leave it out.")
+            raise error(where, "be 'principal'", f"{rule} for {changing}", "Leave it out.")
         if not (self.is_principal or self.is_nearest or has_frame(discrete)):
-            got = f"{asked} for {type(discrete.system).__name__}, of whose values not all are known"
+            got = f"{rule} for {type(discrete.system).__name__}, of whose values not all are known"
             remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
             raise error(where, "be 'principal' or 'nearest'", got, remedy)
 
