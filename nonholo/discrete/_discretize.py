@@ -126,12 +126,10 @@ def _order(order: Any, difference: object, constraint: object) -> int:
     """Refuse an order that is not offered, or not for this difference and constraint."""
     where = "discretize(order=...)"
     order = choice(where, order, (2, *WEIGHTS))
-    if order == 2:
-        return order
-    if callable(difference):
+    if order > 2 and callable(difference):
         got = "a callable L_d(W), which has one time step built in"
         raise error(where, "be 2", f"{order} with {got}", "Pass difference='matrix' or 'logarithmic'.")
-    if constraint not in ("skew", "exponential"):
+    if order > 2 and constraint not in ("skew", "exponential"):
         got = f"{order} with a constraint that may not hold for W^-1 where it holds for W"
         raise error(where, "be 2", got, "Pass constraint='skew' or 'exponential'.")
     return order

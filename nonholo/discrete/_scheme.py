@@ -51,14 +51,13 @@ def register() -> None:
 
     keep_programs()
     for kind in (*_TREES, *Scheme.__subclasses__()):
-        names = kind.leaves, kind.structure
-        flatten, unflatten = functools.partial(_flatten, *names), functools.partial(_unflatten, kind, *names)
+        flatten, unflatten = functools.partial(_flatten, kind), functools.partial(_unflatten, kind)
         jax.tree_util.register_pytree_node(kind, flatten, unflatten)
 
 
-def _flatten(leaves: tuple[str, ...], static: tuple[str, ...], thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    constants = (getattr(thing, name) for name in static)
-    return tuple(getattr(thing, name) for name in leaves), tuple(_hashable(x) for x in constants)
+def _flatten(kind: Any, thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    constants = (getattr(thing, name) for name in kind.structure)
+    return tuple(getattr(thing, name) for name in kind.leaves), tuple(_hashable(x) for x in constants)
 
 
 def _hashable(value: Any) -> Any:
@@ -69,9 +68,10 @@ def _from_hashable(value: Any) -> Any:
     return np.frombuffer(value.entries).reshape(value.shape) if isinstance(value, _FixedArray) else value
 
 
-def _unflatten(kind: type, leaves: tuple[str, ...], static: tuple[str, ...], constants: Any, children: Any) -> Any:
+def _unflatten(kind: Any, constants: Any, children: Any) -> Any:
     thing = object.__new__(kind)
-    for name, value in (*zip(leaves, children, strict=True), *zip(static, map(_from_hashable, constants), strict=True)):
+    values = *children, *map(_from_hashable, constants)
+    for name, value in zip((*kind.leaves, *kind.structure), values, strict=True):
         object.__setattr__(thing, name, value)
     return thing
 
