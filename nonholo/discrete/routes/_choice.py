@@ -134,9 +134,7 @@ def _certain_ball(system: AbstractSystem, tensor: np.ndarray, unit: float, mass:
 def _length_unit(system: AbstractSystem) -> float:
     """Return the length that makes translations comparable with rotations; one for rotations alone."""
     tensor, n = np.asarray(system.homogeneous_mass_tensor), free_rows(system.group)
-    if n == len(tensor):
-        return 1.0
-    if tensor[n, n] <= 0 or np.trace(tensor[:n, :n]) <= 0:  # no length is distinguished
+    if n == len(tensor) or tensor[n, n] <= 0 or np.trace(tensor[:n, :n]) <= 0:  # no length is distinguished
         return 1.0
     return float(np.sqrt(np.trace(tensor[:n, :n]) / tensor[n, n]))
 
