@@ -34,13 +34,13 @@ from .discrete import consistency_defect as consistency_defect
 from .discrete import discrete_legendre as discrete_legendre
 from .discrete import discretize as discretize
 from .discrete import moser_veselov_displacement as moser_veselov_displacement
-from .discrete._step import step as step
 from .discrete.branching import branch_growth as branch_growth
 from .discrete.branching import branches as branches
 from .discrete.branching import displacements_over as displacements_over
 from .discrete.branching import fold_distance as fold_distance
 from .discrete.branching import inverse_discrete_legendre as inverse_discrete_legendre
 from .discrete.definition import allow_float32 as allow_float32
+from .discrete.definition import step as step
 from .ensembles import EnsembleTask as EnsembleTask
 from .ensembles import FamilyTask as FamilyTask
 from .ensembles import MemberBlock as MemberBlock

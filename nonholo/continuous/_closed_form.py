@@ -13,6 +13,7 @@ can lose every digit (at $\Lambda = 2$, or for large ones), so it is evaluated h
 import dataclasses
 import functools
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 import scipy  # its parts load on first use
@@ -23,7 +24,6 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import body_of, momentum_rate
 from nonholo.continuous._series import Problem, Solved, States, body_equations, power_of_two, solve
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, NormalForm
 
 _SMALLEST = 1e-290  # of a pull, or of the part of the momentum across the equilibria: below it digits are lost
@@ -60,9 +60,14 @@ def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"
     $s = s_0 + |\gamma||x|\,t$, $\sinh s_0 = (x_0\cdot Qn)/|x_0\cdot n|$. The rates of two unit vectors give
     $\gamma$.
     """
-    lower = np.linalg.cholesky(system.constrained_inertia)
+    lower, body = np.linalg.cholesky(system.constrained_inertia), body_of(system)
+
+    def rates(x: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
+        rates, _, _ = momentum_rate(system.group, body, x @ lower.T)
+        return np.linalg.solve(lower, rates[..., None])[..., 0]
+
     x = np.linalg.solve(lower, reduced_momentum)
-    first, second = _rates(system, lower, np.eye(2))
+    first, second = rates(np.eye(2))
     pull = np.array([first[1], -second[0]])
     strength, level = np.hypot(*pull), np.hypot(*x)
     constant = Heteroclinic(reduced_momentum, np.zeros(2), np.float64(0), np.float64(0))
@@ -70,19 +75,12 @@ def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"
         return constant
     normal, unit = pull / strength, x / level
     # Taken from the rate: near the equilibria unit @ normal loses more digits.
-    across = _rates(system, lower, unit) @ _quarter_turn(unit) / strength
+    across = rates(unit) @ _quarter_turn(unit) / strength
     if abs(across) <= _SMALLEST:
         return constant
     start = np.arcsinh(unit @ _quarter_turn(normal) / abs(across))
     side = np.copysign(level, across)
     return Heteroclinic(side * lower @ normal, level * lower @ _quarter_turn(normal), start, strength * level)
-
-
-def _rates(
-    system: AbstractSystem, lower: Float[np.ndarray, "2 2"], x: Float[np.ndarray, "... 2"]
-) -> Float[np.ndarray, "... 2"]:
-    rates, _, _ = momentum_rate(system.group, body_of(system), x @ lower.T)
-    return np.linalg.solve(lower, rates[..., None])[..., 0]
 
 
 def _quarter_turn(x: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
@@ -201,40 +199,37 @@ def closed_form(system: AbstractSystem, problem: Problem) -> Solved:
         raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
     motion, form = heteroclinic(system, problem.momentum), system.normal_form
     if form is not None and form.is_sleigh:
-        at = functools.partial(_sleigh_states, system, form, motion, problem)
+        at = functools.partial(_sleigh_states, system, motion, problem)
         return Solved(at(elapsed), Outcome.successful, at)
-    series = _pose_by_series(system.group, motion, body_of(system)[2], problem)
+    series = _pose_by_series(system, motion, problem)
     times = elapsed[: len(series.states.momenta)]
     at = functools.partial(_with_momenta, motion, series.at)
     return series._replace(states=series.states._replace(momenta=motion.momentum(times)), at=at)
 
 
-def _pose_by_series(
-    group: AbstractMatrixGroup, motion: Heteroclinic, to_velocity: Float[np.ndarray, "2 dim"], problem: Problem
-) -> Solved:
+def _pose_by_series(system: AbstractSystem, motion: Heteroclinic, problem: Problem) -> Solved:
     r"""Solve for the poses of a body whose momentum is known in closed form.
 
     In place of the momenta stand sech s and tanh s, whose rates are $-\nu\,\mathrm{sech}\,s\tanh s$ and
     $\nu\,\mathrm{sech}^2 s$.
     """
-    velocities = np.stack([motion.across, motion.along]) @ to_velocity
+    velocities = np.stack([motion.across, motion.along]) @ body_of(system)[2]
     unit = power_of_two(np.append(velocities, motion.rate))
     torques = np.zeros((2, 2, 2))
     torques[0, 1, 0], torques[0, 0, 1] = -motion.rate / unit, motion.rate / unit
     decay = np.exp(-abs(motion.start))
     head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
-    f = body_equations(group, velocities / unit, np.eye(2), torques)
-    return solve(group, f, head, len(head), None, unit, problem)
+    f = body_equations(system.group, velocities / unit, np.eye(2), torques)
+    return solve(system.group, f, head, unit, problem)
 
 
 def _with_momenta(motion: Heteroclinic, series: Callable[[np.ndarray], States], elapsed: np.ndarray) -> States:
     return series(elapsed)._replace(momenta=motion.momentum(elapsed))
 
 
-def _sleigh_states(
-    system: AbstractSystem, form: NormalForm, motion: Heteroclinic, problem: Problem, elapsed: np.ndarray
-) -> States:
-    group, foot, (reduced_momentum, pose, _, _) = system.group, _foot(form), problem
+def _sleigh_states(system: AbstractSystem, motion: Heteroclinic, problem: Problem, elapsed: np.ndarray) -> States:
+    group, form, (reduced_momentum, pose, _, _) = system.group, cast(NormalForm, system.normal_form), problem
+    foot = _foot(form)
     first = pose if foot is None else group.pose_from_matrix(group.matrix_from_pose(pose) @ foot)
     facing = _facing(first)
     omega, u = _turn_and_slide(system, form, reduced_momentum)
@@ -243,7 +238,11 @@ def _sleigh_states(
         turn, shift = _circle(omega, u, elapsed)
     else:
         sign = np.copysign(1.0, _turn_and_slide(system, form, motion.across)[0])
-        turn, shift = _asymptotically_straight(gyration, form.arm, sign, motion, elapsed)
+        # with I = m rho^2: Lambda = rho/|a|, theta - theta_0 = +-Lambda (phi - phi_0); the shift is rho^2/a times the
+        # path, for negative omega its conjugate
+        ratio = gyration / abs(form.arm)
+        angle, path = blade_path(ratio, motion.start, motion.rate * elapsed)
+        turn, shift = sign * ratio * angle, gyration**2 / form.arm * (path if sign > 0 else path.conj())
     heading, place = facing * np.exp(1j * turn), complex(first[2], first[3]) + facing * shift
     rows = np.stack((heading.real, heading.imag, place.real, place.imag), axis=-1)
     if foot is not None:
@@ -275,16 +274,3 @@ def _circle(omega: float, v1: float, elapsed: np.ndarray) -> tuple[np.ndarray, n
     """Return turn and shift of constant velocities: the chord of a circle, or a straight line."""
     half = omega * elapsed / 2
     return 2 * half, v1 * elapsed * sinc(half * half) * np.exp(1j * half)
-
-
-def _asymptotically_straight(
-    gyration: float, a: float, sign: float, motion: Heteroclinic, elapsed: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    r"""Return turn and shift if neither a nor omega is zero.
-
-    With $I = m\rho^2$: $\Lambda = \rho/|a|$, $\theta - \theta_0 = \pm\Lambda(\phi - \phi_0)$, and the shift is
-    $\rho^2/a$ times the `blade_path`, for negative omega its conjugate.
-    """
-    ratio = gyration / abs(a)
-    angle, path = blade_path(ratio, motion.start, motion.rate * elapsed)
-    return sign * ratio * angle, gyration**2 / a * (path if sign > 0 else path.conj())

@@ -64,15 +64,8 @@ class ContinuousFlow(AbstractMotion):
     system: AbstractSystem
     span: tuple[float, float] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
     solution: Callable[[Array], States] | None = dataclasses.field(default=None, repr=False, metadata={"stored": False})
-    conserves_energy: ClassVar[None] = None
-    route_name: ClassVar[None] = None
     time_step: ClassVar[None] = None
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "momentum", "restricted_velocity")
-
-    @property
-    def forces(self) -> Any:
-        """The system with its forces; None of a free one."""
-        return self.system.forces
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a flow with poses or without."""
@@ -111,19 +104,13 @@ class ContinuousFlow(AbstractMotion):
             force = spatial_reaction(system, states.configuration, states.body_velocity)
         else:
             force = reaction(system.group, body_of(system), states.restricted_momentum)
-        whole = forced.system if forced is not None else system
-        return applied(np.linalg.pinv(whole.annihilator).T, force)
+        return applied(np.linalg.pinv(system.inside.annihilator).T, force)
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         """Return the forbidden velocities."""
         system = self.system
         velocity = system.constraint_velocity(states.body_velocity, system.constraint_poses(states))
         return applied(system.annihilator, velocity)
-
-    def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
-        """Refuse: a continuous motion has no displacements."""
-        got = f"chart coordinates {cayley} of a continuous flow"
-        raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")
 
 
 def spatial_velocity(

@@ -52,11 +52,10 @@ _ROUNDING = 1e-12  # relative, of a grip
 _FAST = 1e4  # times in which viscous friction slows a slip down
 
 
-def phases(steps: Any, contacts: Contacts, at: slice, field: Field, start: np.ndarray, span: Any, rtol: float) -> Any:
+def phases(contacts: Contacts, at: slice, field: Field, start: np.ndarray, span: Any, rtol: float) -> Any:
     """Return the ends of the steps, what interpolates within them, and the outcome: too stiff after too many phases.
 
     Args:
-        steps: Solves equations up to a stop.
         contacts: The contacts.
         at: The places of their momenta in a state.
         field: The equations without the forces of contacts.
@@ -71,7 +70,7 @@ def phases(steps: Any, contacts: Contacts, at: slice, field: Field, start: np.nd
     for _ in range(_PHASES):
         is_stiff = phase.is_stiff(span[1] - span[0])
         error, rest = max(rtol, _LEAST_IMPLICIT * is_stiff), (nodes[-1], span[1])
-        own, parts, outcome = steps(phase.derivative, phase.start, rest, error, is_stiff=is_stiff, stop=phase.stop)
+        own, parts, outcome = _steps(phase.derivative, phase.start, rest, error, is_stiff=is_stiff, stop=phase.stop)
         state, length = parts[-1](own[-1]) if parts else phase.start, len(set(own)) - 1
         nodes, pieces = nodes + own[1 : length + 1], pieces + parts[:length]
         if outcome != Outcome.successful or not phase.ends:
@@ -256,8 +255,8 @@ def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
     if not has_series_under(forced, problem.elapsed[-1]):
         return by_runge_kutta(forced, begins, problem, is_stiff=_are_linear(forced))
     (head,), (unit,) = heads(forced, problem.momentum[None], problem.pose[None])
-    f, rank, sizes = quadratic_under(forced), forced.rank, _linear_forces(forced).sizes
-    solution = _series.solve(forced.group, f, head, rank, None, float(unit), problem, _MOST, sizes)
+    f, sizes = quadratic_under(forced), _linear_forces(forced).sizes
+    solution = _series.solve(forced.group, f, head, float(unit), problem, _MOST, sizes)
     return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)
 
 
@@ -280,7 +279,7 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
             remedy = "Start at the first time: a contact at rest has many pasts."
             raise error("flow(times=...)", "increase where rows of a constraint may yield", "a decrease", remedy)
         places = slice(k - len(forced.contacts.inertia), k)
-        nodes, pieces, outcome = phases(_steps, forced.contacts, places, field, start, span, rtol)
+        nodes, pieces, outcome = phases(forced.contacts, places, field, start, span, rtol)
     else:
         nodes, pieces, outcome = _steps(field, start, span, rtol, is_stiff=is_stiff)
 
@@ -295,7 +294,11 @@ def _states_at(
 ) -> States:
     """Return states at times, of a motion without steps the first one."""
     whole = scipy.integrate.OdeSolution(nodes, pieces)(times) if pieces else np.tile(start[:, None], len(times))
-    return _states(forced, whole.T)
+    group, rows, k, N = forced.group, whole.T, forced.rank, forced.group.size
+    g = rows[:, k : k + N * N].reshape(-1, N, N)
+    poses = group.normalize_pose(group.pose_from_matrix(g @ forced.frame))
+    headings = turned_near(rows[:, -1], poses) if group == PLANE else None
+    return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 
 def _steps(
@@ -394,14 +397,6 @@ def _field(forced: Forced, begins: float, k: int, faults: dict[str, str] | None)
         return xp.concatenate([E.T @ force, pose_rate.ravel(), velocity[: len(state) - k - N * N]])
 
     return derivative
-
-
-def _states(forced: Forced, rows: Float[np.ndarray, "K size"]) -> States:
-    group, k, N = forced.group, forced.rank, forced.group.size
-    g = rows[:, k : k + N * N].reshape(-1, N, N)
-    poses = group.normalize_pose(group.pose_from_matrix(g @ forced.frame))
-    headings = turned_near(rows[:, -1], poses) if group == PLANE else None
-    return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 
 def forced_reaction(forced: Forced, states: Orbit) -> Covectors:

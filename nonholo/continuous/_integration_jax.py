@@ -45,20 +45,17 @@ def _solved_again(system: AbstractSystem, problem: Problem, elapsed: np.ndarray)
     return states.chosen(np.searchsorted(times, np.abs(elapsed)))
 
 
-def _rate(group: AbstractMatrixGroup, is_spatial: bool, state: State, numbers: Any) -> State:
-    r, pose, heading = state
-    if is_spatial:
-        g = group.matrix_from_pose(pose)
-        rate, velocity = 0 * r, group.adjoint(group.inverse(g)) @ spatial_velocity(group, *numbers, r=r, g=g)
-    else:
-        rate, velocity, _ = momentum_rate(group, numbers, r)
-    return rate, group.pose_rate(pose, velocity), velocity[: heading.shape[0]]
-
-
 @functools.partial(jax.jit, static_argnums=(0, 1))
 def _sweep(
     group: AbstractMatrixGroup, is_spatial: bool, state: State, numbers: Any, elapsed: Array, tolerances: Any
 ) -> tuple[State, Array]:
-    return sweep(
-        lambda _, current: _rate(group, is_spatial, current, numbers), lambda end: end, state, elapsed, tolerances
-    )
+    def rate(_: Array, state: State) -> State:
+        r, pose, heading = state
+        if is_spatial:
+            g = group.matrix_from_pose(pose)
+            rate, velocity = 0 * r, group.adjoint(group.inverse(g)) @ spatial_velocity(group, *numbers, r=r, g=g)
+        else:
+            rate, velocity, _ = momentum_rate(group, numbers, r)
+        return rate, group.pose_rate(pose, velocity), velocity[: heading.shape[0]]
+
+    return sweep(rate, lambda end: end, state, elapsed, tolerances)

@@ -112,9 +112,9 @@ class Series(NamedTuple):
         group: Of the poses.
         equations: The quadratic equations.
         head: The number of components behind the pose.
-        rank: How many of them, the first, are the momenta; the others belong to forces.
+        momentum: r at the start, whose components are the first behind the pose, others belong to forces; constant if
+            the constraint is fixed in space.
         compact: Whether poses are integrated as compact ones, not as matrices.
-        momentum: r, if the constraint is fixed in space, where it is constant; else None.
         unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
             over- or underflows without need.
         sizes: Units of the momenta.
@@ -126,9 +126,8 @@ class Series(NamedTuple):
     group: AbstractMatrixGroup
     equations: Quadratic
     head: int
-    rank: int
+    momentum: Float[np.ndarray, "k"]
     compact: bool
-    momentum: Float[np.ndarray, "k"] | None
     unit: float
     sizes: Any
     tolerance: float
@@ -156,25 +155,24 @@ class Series(NamedTuple):
             poses[part] = group.normalize_pose(poses[part])
             if headings is not None:
                 headings[part] = turned_near(headings[part], poses[part])
-        if self.momentum is None:
-            head *= self.unit
-            momenta = np.ascontiguousarray(head[:, : self.rank] * self.sizes)
-        else:
-            momenta = np.broadcast_to(self.momentum, (len(poses), len(self.momentum))).copy()
-        return States(momenta, poses, headings)
+        k = len(self.momentum)
+        if len(self.equations.forms):
+            return States(np.broadcast_to(self.momentum, (len(poses), k)).copy(), poses, headings)
+        head *= self.unit
+        return States(np.ascontiguousarray(head[:, :k] * self.sizes), poses, headings)
 
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:
     """Solve the equations of a system."""
-    reduced_momentum, f, constant, sizes = problem.momentum, quadratic(system), None, 1.0
+    reduced_momentum, f, sizes = problem.momentum, quadratic(system), 1.0
     if system.is_spatial:
         unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(problem.pose)))
-        f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
+        f, head = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size)
     else:
         sizes = _own_numbers(system)[2]
         unit = power_of_two(sizes * f.velocities.dot(reduced_momentum / sizes))
         head = reduced_momentum / sizes / unit
-    return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem, sizes=sizes)
+    return solve(system.group, f, head, unit, problem, sizes=sizes)
 
 
 def has_compact_rates(group: AbstractMatrixGroup) -> bool:
@@ -191,19 +189,17 @@ def solve(
     group: AbstractMatrixGroup,
     f: Quadratic,
     head: np.ndarray,
-    rank: int,
-    constant: np.ndarray | None,
     unit: float,
     problem: Problem,
     most: float = math.inf,
     sizes: Any = 1.0,
 ) -> Solved:
     """Solve equations from a head and a pose, in up to as many steps; see `Series` for the others."""
-    _, pose, elapsed, tolerances = problem
+    momentum, pose, elapsed, tolerances = problem
     compact, tolerance = has_compact_rates(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     columns, nodes = solve_series(f, (g, first_heading(group, pose), head), elapsed * unit, tolerance, most)
-    series = Series(group, f, len(head), rank, compact, constant, unit, sizes, tolerance, float(elapsed[-1]), nodes)
+    series = Series(group, f, len(head), momentum, compact, unit, sizes, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(columns[0]) == len(elapsed) else Outcome.not_converged
     return Solved(series.decode(columns), outcome, series, series.looks)
 

@@ -6,7 +6,6 @@ all of the variety, compiled. With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r =
 """
 
 import dataclasses
-from typing import TypeAlias
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import Scheme, legendre, matrix_legendre
 from nonholo.kernels import decoding
-from nonholo.orbit import Decoder
 
 Charts = Float[np.ndarray, "K m"]
 
@@ -72,17 +70,6 @@ class ClosedDisplacementDecoder:
     def tangent(self, charts: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K 2 2"]:
         """Return the derivatives of restricted momenta after a step by those before it."""
         return decoding.read(decoding.write_tangents, self.numbers, (charts,), (2, 2))
-
-
-AnyDisplacementDecoder: TypeAlias = DisplacementDecoder | ClosedDisplacementDecoder
-
-
-def displacement_decoder(discrete: Scheme, body: Decoder) -> AnyDisplacementDecoder:
-    """Return the decoder of the displacements of a map of order 2, whose body has a decoder."""
-    numbers = body.numbers if discrete.difference == "matrix" else None
-    if numbers is None or not discrete.variety.exact or discrete.variety.exponential:
-        return DisplacementDecoder(discrete)
-    return ClosedDisplacementDecoder(numbers, float(discrete.time_step))
 
 
 def step_jacobians(discrete: Scheme, W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... k k"]:

@@ -10,18 +10,16 @@ from nonholo.base.checks import error, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
-from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Scheme, legendre, refuse_composition
-from nonholo.discrete._variety import definition, equations_of
+from nonholo.discrete._decoder import ClosedDisplacementDecoder, DisplacementDecoder
+from nonholo.discrete._scheme import Scheme, definition, equations_of, legendre, refuse_composition
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractCompiledRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
+_SAMPLES, _EVEN = 16, 1e-10  # of displacements; relative difference of values that counts as rounding
 
 
-@pytree
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Discretization(Scheme, AbstractMotion):
     """A discretized system, made by `discretize`.
@@ -54,9 +52,12 @@ class Discretization(Scheme, AbstractMotion):
         return make_route(self, self.wanted_route)
 
     @functools.cached_property
-    def displacement_decoder(self) -> AnyDisplacementDecoder:
+    def displacement_decoder(self) -> DisplacementDecoder | ClosedDisplacementDecoder:
         """The decoder of the displacements of its single steps."""
-        return displacement_decoder(self, self.decoder)
+        numbers = self.decoder.numbers if self.difference == "matrix" else None
+        if numbers is None or not self.variety.exact or self.variety.exponential:
+            return DisplacementDecoder(self)
+        return ClosedDisplacementDecoder(numbers, float(self.time_step))
 
     @functools.cached_property
     def _steppers(self) -> tuple[AbstractBodyStepper, ...]:
@@ -67,17 +68,24 @@ class Discretization(Scheme, AbstractMotion):
         return self._steppers[bool(with_poses)]
 
     def first(self, start: Start, *, with_poses: bool) -> First:
-        """Return the checked start of a run whose rows have poses or not: one may be large."""
+        """Return the checked start of a run whose rows have poses or not: one may be large.
+
+        A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root
+        agrees.
+        """
         system, g = self.system, None
         if start.configuration is not None or (with_poses and system.is_spatial):
             g = start.pose(system.group)
-        reduced, demand = initial_state(self, start, g if with_poses else None)
-        return First((reduced, start.canonical_pose(system, g) if with_poses else np.empty(0)), demand)
-
-    @functools.cached_property
-    def forces(self) -> Forced | None:
-        """The system with its forces; None of a free one."""
-        return self.system.forces
+        g, pose = (g, start.canonical_pose(system, g)) if with_poses else (None, np.empty(0))
+        if start.name != "displacement":
+            full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
+            return First((start.momentum(system, g), pose), np.asarray(start.value, dtype=np.float64) if full else None)
+        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
+        refuse_composition(start.where, self, remedy)
+        refuse_forces(start.where, system)
+        W = on_variety(start.where, self, g, start.value)
+        momentum = legendre(self, W - system.group.identity, "left")
+        return First((of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), pose), W)
 
     @functools.cached_property
     def is_balanced(self) -> bool:  # type: ignore[override]
@@ -86,12 +94,6 @@ class Discretization(Scheme, AbstractMotion):
             return False
         free = dataclasses.replace(self, system=self.forces.system)
         return self.forces.is_balanced(free.conserves_energy, self.order > 2)
-
-    @property
-    def step_needs_pose(self) -> bool:
-        """Whether momenta after a step depend on the pose: with right-invariant constraints, and under some forces."""
-        forced = self.forces
-        return self.system.is_spatial or (forced is not None and bool(forced.terms or forced.function))
 
     @property
     def route_name(self) -> str:
@@ -124,7 +126,10 @@ class Discretization(Scheme, AbstractMotion):
         """
         if not callable(self.difference):
             return True
-        return definition("discretize(difference=...)").is_even(self.difference, self.system.group)
+        group, map_each = self.system.group, definition("discretize(difference=...)").map_each
+        W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
+        there, back = map_each(self.difference, W), map_each(self.difference, group.inverse(W))
+        return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
@@ -254,8 +259,7 @@ class Discretization(Scheme, AbstractMotion):
             arriving = arriving + self._impulses(before, 0) + self._impulses(after, 0)
         elif self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
-        whole = self.system if self.forces is None else self.forces.system
-        group, to_multipliers = self.system.group, np.linalg.pinv(whole.annihilator).T
+        group, to_multipliers = self.system.group, np.linalg.pinv(self.system.inside.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration
@@ -299,25 +303,6 @@ def as_discretization(where: str, value: Any, *, compositions: bool = False, for
     if not forced:
         refuse_forces(where, value.system)
     return value
-
-
-def initial_state(
-    discrete: Scheme, start: Start, g: Float[np.ndarray, "N N"] | None
-) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "N N"] | Float[np.ndarray, "dim"] | None]:
-    """Return the canonical restricted momentum of a start, and what the first state must reproduce, if anything.
-
-    A displacement or a full momentum determines W_0 or P_0 completely; the run checks that the principal root agrees.
-    """
-    system = discrete.system
-    if start.name == "displacement":
-        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
-        refuse_composition(start.where, discrete, remedy)
-        refuse_forces(start.where, discrete.system)
-        W = on_variety(start.where, discrete, g, start.value)
-        momentum = legendre(discrete, W - system.group.identity, "left")
-        return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), W
-    full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
-    return start.momentum(system, g), np.asarray(start.value, dtype=np.float64) if full else None
 
 
 def check_first_state(demand: np.ndarray, there: Orbit) -> None:

@@ -37,8 +37,6 @@ class MeasuredMotion(AbstractMotion):
 
     system: System
     time_step: float | None = None
-    conserves_energy: ClassVar[None] = None
-    route_name: ClassVar[None] = None
     is_measured: ClassVar[bool] = True
 
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:

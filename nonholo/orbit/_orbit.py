@@ -56,6 +56,9 @@ class AbstractMotion(Keeper, abc.ABC):
         is_balanced: Whether forces act by equal half impulses at the displacement, so that T + U and every balance is
             exact.
         is_measured: Whether poses were given, and everything else follows from them.
+        conserves_energy: Whether a discrete map conserves the energy exactly; None for a flow, which does up to its
+            solver.
+        route_name: How stores call the way in which steps are computed; None for a flow.
         columns: The arrays of its orbits, as stores keep them.
     """
 
@@ -63,6 +66,8 @@ class AbstractMotion(Keeper, abc.ABC):
     span: tuple[float, float] | None = None
     is_balanced: bool = False
     is_measured: bool = False
+    conserves_energy: bool | None = None
+    route_name: str | None = None
     columns: ClassVar[tuple[str, ...]] = STATES
 
     @functools.cached_property
@@ -70,15 +75,10 @@ class AbstractMotion(Keeper, abc.ABC):
         """The decoder of the momenta and poses of its orbits."""
         return decoder_of(self.system)
 
-    @property
-    @abc.abstractmethod
-    def conserves_energy(self) -> bool | None:
-        """Whether a discrete map conserves the energy exactly; None for a flow, which does up to its solver."""
-
-    @property
-    @abc.abstractmethod
-    def route_name(self) -> str | None:
-        """How stores call the way in which steps are computed; None for a flow."""
+    @functools.cached_property
+    def forces(self) -> Any:
+        """The system with its forces; None of a free one."""
+        return self.system.forces
 
     def orbit(self, **rows: Any) -> "Orbit":
         """Return the orbit of rows of its columns, and what else an orbit has."""
@@ -115,9 +115,13 @@ class AbstractMotion(Keeper, abc.ABC):
         """Return the displacements of whole steps from the states, in the user's frame; spatial ones of LR systems."""
         return self.displaced(states.canonical_chart)
 
-    @abc.abstractmethod
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
-        """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates."""
+        """Return the elements of the displacement variety, in the user's frame, with canonical chart coordinates.
+
+        Refused by default: a continuous motion has no displacements.
+        """
+        got = f"chart coordinates {cayley} of a continuous flow"
+        raise ValueError(f"`Orbit.displacement` needs a discrete orbit. Got {got}. Use `simulate`.")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)

@@ -75,8 +75,8 @@ def _other_stepper(
         got, remedy = f"the branch rule {rule.name!r}", "Only 'principal' runs compiled by numba."
         raise error(where, "be 'auto' or 'jax'", got, remedy)
     if has_frame(discrete) and backend == "auto":
-        return RuleStepper(discrete, rule, with_poses)
-    if rule.needs_all_values:
+        return RuleStepper(discrete, with_poses, rule)
+    if not rule.is_nearest:
         raise error(where, "be 'auto'", f"{shown(backend)} with branch {rule.name!r}", "Leave it out.")
     return _by_definition(discrete, with_poses=with_poses, branch=rule.name)
 

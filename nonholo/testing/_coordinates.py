@@ -44,25 +44,17 @@ class CoordinateSamples:
         with double_precision():
             return np.asarray(function(*arguments))
 
-    def _at(self, name: str, *state: Any) -> np.ndarray:
+    def at(self, name: str, *state: Any) -> np.ndarray:
         """Return the value of a function of the system at a state, whose last entry is the time."""
         return self._value(getattr(self.system.plain, name), *(state if self.system.takes_time(name) else state[:-1]))
-
-    def lagrangian(self, q: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
-        """Return L."""
-        return self._at("lagrangian", q, v, t)
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
         """Return the rows of the constraint, before the last ones of prescribed coordinates those of holonomic ones."""
         system, n = self.system.plain, self.system.dimension
-        rows = np.zeros((0, n)) if system.constraint_forms is None else self._at("constraint_forms", q, t)
+        rows = np.zeros((0, n)) if system.constraint_forms is None else self.at("constraint_forms", q, t)
         if system.holonomic is not None:
-            rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(self.places.beside(q, x), t)).T])
+            rows = np.concatenate([rows, self.gradient(lambda x: self.at("holonomic", self.places.beside(q, x), t)).T])
         return np.concatenate([rows, np.eye(n)[[i for i, _ in system.prescribed]]])
-
-    def holonomic(self, q: np.ndarray, t: float) -> Float[np.ndarray, "m"]:
-        """Return what holonomic constraints leave."""
-        return self._at("holonomic", q, t)
 
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
         """Return the force, of a table that of a step."""
@@ -76,8 +68,8 @@ class CoordinateSamples:
         if (own := self.system.plain.discrete_lagrangian) is not None:
             return self._value(own, *places.ends(before, places.step(v, h), h), h)
         if self.system.rule == "midpoint":
-            return h * self.lagrangian((before + after) / 2, v, t + h / 2)
-        return h * (self.lagrangian(before, v, t) + self.lagrangian(after, v, t + h)) / 2
+            return h * self.at("lagrangian", (before + after) / 2, v, t + h / 2)
+        return h * (self.at("lagrangian", before, v, t) + self.at("lagrangian", after, v, t + h)) / 2
 
     def gradient(self, function: Callable[[np.ndarray], Any]) -> Float[np.ndarray, "n"]:
         """Return the derivatives at zero of a function of n numbers, a row for each."""
@@ -145,13 +137,13 @@ class CoordinateSamples:
 @measures(SYSTEM, "momentum", "p = dL/dv, by differences", 1e-8)
 def _momentum(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
-    return relative(p, s.gradient(lambda w: s.lagrangian(q, v + w, t)))
+    return relative(p, s.gradient(lambda w: s.at("lagrangian", q, v + w, t)))
 
 
 @measures(SYSTEM, "energy", "E = v p - L", 1e-11)
 def _energy(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
-    energy = v @ p - s.lagrangian(q, v, t)
+    energy = v @ p - s.at("lagrangian", q, v, t)
     return abs(s.near.energy[2] - energy) / (abs(energy) + abs(v @ p))
 
 
@@ -170,7 +162,7 @@ def _constraint(s: CoordinateSamples) -> float:
 def _equations(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
     turn = 0.0 if (group := getattr(s.system, "group", None)) is None else group.coad(v, p)
-    along = turn + s.gradient(lambda x: s.lagrangian(s.places.beside(q, x), v, t)) + s.force(t, q, v, 0)
+    along = turn + s.gradient(lambda x: s.at("lagrangian", s.places.beside(q, x), v, t)) + s.force(t, q, v, 0)
     return gap(_slope(s.near.momentum), along + s.near.multipliers[2] @ s.forms(q, t))
 
 
@@ -190,7 +182,7 @@ def _slope(rows: Sequence[np.ndarray]) -> Float[np.ndarray, "n"]:
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(report.result_or_raise(s.run)))
+    return float(s.steps + 1 - len(report.result_of(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
@@ -209,7 +201,7 @@ def _drivers(s: CoordinateSamples) -> float:
 def _holonomic(s: CoordinateSamples) -> float:
     need(s.system.holonomic, "no constraint is holonomic")
     states = zip(s.orbit.configuration, s.orbit.time, strict=True)
-    return max(largest(s.holonomic(q, t)) / (1 + largest(q)) for q, t in states)
+    return max(largest(s.at("holonomic", q, t)) / (1 + largest(q)) for q, t in states)
 
 
 @measures(MAP, "start", "the first momentum along the constraint is that of the start", 1e-11)

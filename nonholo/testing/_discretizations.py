@@ -3,13 +3,13 @@
 import dataclasses
 import functools
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import scipy.integrate
 
 from nonholo.analysis import Convergence, compare, invariants
-from nonholo.base.checks import count, flags, generator, instance, needs, positive, refuse_given
+from nonholo.base.checks import count, flags, generator, instance, positive, refuse_given
 from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
@@ -188,8 +188,7 @@ class OrbitSamples:
 
 def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:
     """Return the values of a function of one JAX matrix; JAX loads slowly, and only callables need it."""
-    with needs("jax", "check_discretization(...) with functions"):
-        from nonholo.discrete.definition import map_each
+    from nonholo.discrete.definition import map_each
 
     return map_each(function, W.reshape(-1, *W.shape[-2:])).reshape(W.shape[:-2])
 
@@ -448,13 +447,13 @@ def transversality(s: OrbitSamples) -> float:
 @measures(CHECKS, "orbit", f"a run with steps of norm {STEP} goes through, or with a part of that: the divisor", 32.0)
 def runs(s: OrbitSamples) -> float:
     """Return the share of the intended path that a short run covers, inverted; raise what it raised."""
-    return s.steps * s.step / report.result_or_raise(s.run)[1]
+    return s.steps * s.step / report.result_of(s.run)[1]
 
 
 @measures(CHECKS, "finer orbits", f"one path in {report.COUNTS} steps goes through, or a part of it: the divisor", 32.0)
 def runs_finer(s: OrbitSamples) -> float:
     """Return the same of runs in finer and finer steps."""
-    return s.path / report.result_or_raise(s.finer)[1]
+    return s.path / report.result_of(s.finer)[1]
 
 
 @measures(CHECKS, "start", "P(W_0) along d is the momentum of the velocity", 1e-11)
@@ -508,8 +507,7 @@ def compiled_reversal(s: OrbitSamples) -> float:
     """Return the miss of one compiled step forward and back."""
     need(s.discrete.route.compiled_route is not None, "the step is not compiled")
     need(s.discrete.forces is None, "forces act")
-    defect = invariants(s.orbit).reversal_defect
-    return float("nan") if defect is None else defect
+    return cast(float, invariants(s.orbit).reversal_defect)
 
 
 def energy_drift(s: OrbitSamples) -> float:

@@ -224,17 +224,11 @@ SECOND = "errors against the flow fall with the square of the step: |slope - 2|"
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
 
 
-def result_of(outcome: Any, otherwise: str) -> Any:
-    """Return what a run made; where it failed, one check has failed, and the others have nothing to judge."""
+def result_of(outcome: Any, otherwise: str | None = None) -> Any:
+    """Return what a run made, or raise what it raised: in one check, for which the others have nothing to judge."""
     if isinstance(outcome, Exception):
-        raise NotApplicableError(str(outcome) if isinstance(outcome, NotApplicableError) else otherwise)
-    return outcome
-
-
-def result_or_raise(outcome: Any) -> Any:
-    """Return what a run made, or raise what it raised."""
-    if isinstance(outcome, Exception):
-        raise outcome
+        is_for_all = otherwise is None or isinstance(outcome, NotApplicableError)
+        raise outcome if is_for_all else NotApplicableError(otherwise)
     return outcome
 
 

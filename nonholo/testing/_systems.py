@@ -95,10 +95,6 @@ class SystemSamples:
         """Return the potential energy."""
         return 0.0 if self.forced is None else self.forced.potential_energy(g)
 
-    def energy(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
-        """Return the constrained energy that the system states: the kinetic one."""
-        return self.system.constrained_energy(restricted, g)
-
     def full_momentum(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         """Return the momentum of the admissible velocity with these momenta along the constraint."""
         velocity = self.system.restricted_velocity(restricted, g) @ self.S
@@ -171,14 +167,14 @@ def _velocity(s: SystemSamples) -> float:
 @measures(CHECKS, "energy", "constrained_energy = kinetic energy of the admissible velocity", 1e-11)
 def _kinetic_energy(s: SystemSamples) -> float:
     need_motion(s)
-    return relative(s.energy(s.restricted, s.g), np.sum(s.momentum * s.body_velocity, axis=-1) / 2)
+    return relative(s.system.constrained_energy(s.restricted, s.g), np.sum(s.momentum * s.body_velocity, axis=-1) / 2)
 
 
 @measures(CHECKS, "energy of full momenta", "constrained_energy(p) = constrained_energy(p along S)", 1e-11)
 def _full_energy(s: SystemSamples) -> float:
     need_motion(s)
     need(len(s.S) < s.group.dim, "nothing is forbidden: full momenta are restricted ones")
-    return relative(s.energy(s.momentum, s.g), s.energy(s.restricted, s.g))
+    return relative(s.system.constrained_energy(s.momentum, s.g), s.system.constrained_energy(s.restricted, s.g))
 
 
 def _into_canonical(s: SystemSamples) -> np.ndarray:
@@ -211,7 +207,7 @@ def _frame_of_momenta(s: SystemSamples) -> float:
 def _frame_of_energy(s: SystemSamples) -> float:
     _into_canonical(s)
     energy = s.system.canonical.constrained_energy(s.restricted @ s.system.frame_map.T)  # type: ignore[attr-defined]
-    return relative(energy, s.energy(s.restricted, s.g))
+    return relative(energy, s.system.constrained_energy(s.restricted, s.g))
 
 
 def need_motion(s: SystemSamples) -> None:
@@ -298,8 +294,8 @@ def _constraint(s: SystemSamples) -> float:
 def _energy(s: SystemSamples) -> float:
     need_motion(s)
     power = np.sum(s.force * s.body_velocity, axis=-1)
-    rate = s.along_the_motion(lambda restricted, g: s.energy(restricted, g) + s.potential(g))
-    return largest(rate - power) / max(largest(s.energy(s.restricted, s.g)), largest(power))
+    rate = s.along_the_motion(lambda restricted, g: s.system.constrained_energy(restricted, g) + s.potential(g))
+    return largest(rate - power) / max(largest(s.system.constrained_energy(s.restricted, s.g)), largest(power))
 
 
 @measures(CHECKS, "potential force", "the force of the potential is -dU", 1e-8)

@@ -8,7 +8,7 @@ from bodies import ATTRACTING, mass_tensor, random_rows
 from problems import EVERY
 
 import nonholo as nh
-from nonholo.continuous import _arrowhead
+from nonholo.continuous import _solvers
 from nonholo.systems import AbstractLLSystem
 
 RNG = np.random.default_rng(29)
@@ -56,17 +56,15 @@ def test_the_equations_are_the_vector_field(name: str) -> None:
     """The rates of the momenta are those of the definition, at several momenta and at rest."""
     system = SYSTEMS[name].canonical
     form, field = system.normal_form, nh.vector_field(system)
-    f, pose = _arrowhead.equations(form)[0], system.group.identity.ravel()
+    f, pose = _solvers.arrowhead(form)[0], system.group.identity.ravel()
     for size in (1.0, 1e3, 0.0):
         r = system.restricted_momentum(size * RNG.normal(size=system.rank))
-        x = _arrowhead.encode(form, r)
+        x = _solvers.encode(form, r)
         rate = (f.coupling @ x) * f.rates * x - (f.rates * x @ x) * f.coupling
         expected = field(0.0, np.append(r, pose))[: system.rank]
-        scale = (
-            np.abs(f.coupling).max() * f.rates.max() * (x @ x) * np.abs(_arrowhead.decode(form, np.eye(len(x)))).max()
-        )
-        assert np.abs(_arrowhead.decode(form, rate[None])[0] - expected).max() <= 1e-13 * scale
-        assert np.abs(_arrowhead.decode(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
+        scale = np.abs(f.coupling).max() * f.rates.max() * (x @ x) * np.abs(_solvers.decode(form, np.eye(len(x)))).max()
+        assert np.abs(_solvers.decode(form, rate[None])[0] - expected).max() <= 1e-13 * scale
+        assert np.abs(_solvers.decode(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
 
 
 @pytest.mark.profile("routes", cases=["top in other axes", "top 12"])

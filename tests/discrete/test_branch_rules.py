@@ -68,20 +68,20 @@ def test_the_principal_rule_on_the_sphere_steps_as_the_compiled_run(discrete: nh
     """The rule's own root over each new momentum against the kernels, which never ask it."""
     frame, r = frame_of("test", discrete), 0.2 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
     orbit = nh.simulate(discrete, momentum=r, steps=10)
-    code, place = first_place("test", discrete, frame, PRINCIPAL, discrete.system.to_canonical(r), None)
+    code, place = first_place("test", frame, PRINCIPAL, discrete.system.to_canonical(r), None)
     for W in orbit.displacement:
         assert code == 0
         assert place is not None
-        assert np.abs(displacement_at(discrete, frame, place.point) - W).max() < 1e-13
-        code, place = next_place(discrete, frame, PRINCIPAL, place)
+        assert np.abs(displacement_at(frame, place.point) - W).max() < 1e-13
+        code, place = next_place(frame, PRINCIPAL, place)
 
 
 @pytest.mark.parametrize("name", ["principal", "nearest", "smallest", "largest", "inner", "outer"])
 def test_a_rule_bears_its_name(name: str) -> None:
-    """One object a name; orbits record it, and only those that compare values need them all."""
+    """One object a name; orbits record it, and the rules but for two need all values."""
     rule = branch_rule("test", name)
     assert (rule.name, rule.is_principal) == (name, name == "principal")
-    assert rule.needs_all_values == (name not in ("principal", "nearest"))
+    assert rule.is_nearest == (name == "nearest")
 
 
 def test_nearest_follows_any_real_value() -> None:

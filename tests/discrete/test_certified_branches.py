@@ -14,7 +14,7 @@ from sturm import assert_counted, real_roots
 
 import nonholo as nh
 from nonholo.discrete.certificate import _roots as certificate_roots
-from nonholo.discrete.certificate._families import _secular
+from nonholo.discrete.certificate._certificate import _secular
 from nonholo.discrete.certificate._roots import Problem, isolate, sharpen
 from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup
@@ -254,15 +254,15 @@ def test_secular_polynomials_are_those_of_their_definition(k: int, coupled: bool
     spread = rng.integers(-9, 9, (k, k))
     B, half = (spread @ spread.T).tolist(), 7
     whole = [[fmpz(x) for x in row] for row in (c.tolist(), d.tolist())]
-    secular = _secular(Problem(fmpz_mat(B), *whole, fmpz(half), None))
+    determinant, _, *secular, Y = _secular(Problem(fmpz_mat(B), *whole, fmpz(half), None))
     for mu in range(1, 2 * k + 3):  # no eigenvalue of B is negative
         shifted = fmpz_mat([[x + mu * (i == j) for j, x in enumerate(row)] for i, row in enumerate(B)])
         sides = fmpz_mat([[int(x), int(y)] for x, y in zip(c, d, strict=True)])
         solved = (fmpq_mat(shifted).solve(fmpq_mat(sides)) * shifted.det()).numer_denom()[0].tolist()
         Ac, Ad = (np.array(column) for column in zip(*solved, strict=True))
         n1, n2 = shifted.det() * mu + c @ Ac, shifted.det() * half - c @ Ad
-        assert (secular.determinant(mu), secular.n1(mu), secular.n2(mu)) == (shifted.det(), n1, n2)
-        assert [y(mu) * shifted.det() for y in secular.y] == list(n1 * Ad + n2 * Ac)
+        assert (determinant(mu), *(row(mu) for row in secular)) == (shifted.det(), n1, n2)
+        assert [y(mu) * shifted.det() for y in Y] == list(n1 * Ad + n2 * Ac)
 
 
 GROUPS = [nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3)]

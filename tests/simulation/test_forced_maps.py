@@ -15,7 +15,7 @@ from refusals import refusals
 from simulation.forces import HEAVY, RUB, SLEIGH, SLOPE, TOP, VESELOVA, drive, hill, start_of
 
 import nonholo as nh
-from nonholo.discrete.routes import FunctionRoute
+from nonholo.discrete.routes._forced import FunctionRoute
 from nonholo.orbit import First
 from nonholo.systems import AbstractSystem
 

@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md, "Following a value".
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -18,10 +18,8 @@ from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Bool, Float, Inexact
+from nonholo.discrete._discretization import Discretization
 from nonholo.systems import NormalForm
-
-if TYPE_CHECKING:
-    from nonholo.discrete._discretization import Discretization
 
 _BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
 _RANK = 1e-13  # relative singular value below which a direction is left alone
@@ -158,6 +156,7 @@ class Frame:
     r"""The way from a body in its canonical frame to its equations.
 
     Attributes:
+        discrete: The discretization of the body.
         axes: Columns are principal axes of B.
         stiffness: Eigenvalues of B over `inertia`.
         coupling: c in these axes over `inertia`.
@@ -169,6 +168,7 @@ class Frame:
         rows: Takes canonical momenta to those along the rows of the normal form; None where they are the same.
     """
 
+    discrete: Discretization
     axes: Float[np.ndarray, "k k"]
     stiffness: Float[np.ndarray, "k"]
     coupling: Float[np.ndarray, "k"]
@@ -216,23 +216,19 @@ class Frame:
 
     def increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         """Return the canonical displacements minus the identity, without cancellation."""
-        X = self._own_increment(x)
-        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
-
-    def _own_increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         k = len(self.stiffness)
         z0, z = x[..., :1], applied(self.axes, x[..., 1 : k + 1])
         if self.length is None:
             q, sign = np.concatenate([z, z0], axis=-1), np.append(-np.ones(k), 1.0)
             X = 2 * (q[..., :, None] * q[..., None, :]) * sign
             X[..., -1, -1] = -2 * (z * z).sum(axis=-1)
-            return X
-        q, sign = np.concatenate([z0, -z], axis=-1), np.append(1.0, -np.ones(k))
-        X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
-        X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
-        X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
-        X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
-        return X
+        else:
+            q, sign = np.concatenate([z0, -z], axis=-1), np.append(1.0, -np.ones(k))
+            X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
+            X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
+            X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
+            X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
+        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:
         """Return the point over a canonical displacement of the variety, real or complex."""
@@ -251,13 +247,13 @@ class Frame:
         return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.offset @ z) / self.length]])
 
 
-def has_frame(discrete: "Discretization") -> bool:
+def has_frame(discrete: Discretization) -> bool:
     """Return whether all branches of a discretization are known."""
     has_form = discrete.system.normal_form is not None
     return has_form and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
 
-def frame_of(where: str, discrete: "Discretization") -> Frame:
+def frame_of(where: str, discrete: Discretization) -> Frame:
     """Return the frame of a system whose branches are known, or refuse it."""
     if not has_frame(discrete):
         requirement = "be a top or a sleigh with difference 'matrix'"
@@ -265,10 +261,7 @@ def frame_of(where: str, discrete: "Discretization") -> Frame:
         got = f"{name}, difference {discrete.difference!r}, constraint {discrete.constraint!r}"
         remedy = "Discretize one of them with constraint 'skew' or 'exponential'; of others only the principal "
         raise error(where, requirement, got, remedy + "branch is computed (`step`, `simulate`).")
-    return _frame(cast(NormalForm, discrete.system.normal_form))
-
-
-def _frame(form: NormalForm) -> Frame:
+    form = cast(NormalForm, discrete.system.normal_form)
     eigenvalues, axes = np.linalg.eigh(form.stiffness_matrix)
     unit = float(eigenvalues[-1] + (form.mass * form.arm**2 if form.is_sleigh else 0.0))
     length = float(np.sqrt(unit / form.mass)) if form.is_sleigh else None
@@ -276,7 +269,8 @@ def _frame(form: NormalForm) -> Frame:
     if np.linalg.norm(coupling) <= _BALANCED:
         coupling = np.zeros_like(coupling)
     lever = None if length is None else float(form.arm / length)
-    return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, form.offset, form.frame, form.frame_map)
+    place = form.offset, form.frame, form.frame_map
+    return Frame(discrete, axes, eigenvalues / unit, coupling, unit, length, lever, *place)
 
 
 _LONGEST = 0.1  # a predicted move per continuation step, on the sphere

@@ -207,11 +207,6 @@ class Node:
         """The system with its forces."""
         return cast(Forced, self.discrete.forces)
 
-    @property
-    def free(self) -> Discretization:
-        """The discretization of the body inside."""
-        return dataclasses.replace(self.discrete, system=self.forced.system)
-
     def equations(self, canonical: Inexact[np.ndarray, "k"]) -> Equations:
         """Return the equations over a canonical restricted momentum."""
         h, forced, frame = self.discrete.time_step, self.forced, self.frame
@@ -237,13 +232,13 @@ class Node:
         """Half impulses along the constraint at the identity, what Cayley coordinates of one add, and friction."""
         forced, group, h = self.forced, self.forced.group, float(self.discrete.time_step)
         m, drag = forced.rank, np.zeros((forced.rank, forced.rank))
-        W = self.free.displaced(np.concatenate([np.zeros((1, m)), np.eye(m)]))
+        W = self.frame.discrete.displaced(np.concatenate([np.zeros((1, m)), np.eye(m)]))
         row = np.repeat(forced.rows(np.array([self.step])), m + 1, axis=0)
         poses = np.repeat(self.configuration[None], m + 1, axis=0)
         still = dataclasses.replace(forced, force=None).mean_force(poses, W, h, row)
         along = forced.to_canonical(forced.restrict(still))
         if forced.friction is not None:
-            velocities = group.vee(forced.from_canonical_frame(group.hat(self.free.variety.chart)))
+            velocities = group.vee(forced.from_canonical_frame(group.hat(self.frame.discrete.variety.chart)))
             drag = forced.to_canonical(forced.restrict(-forced.friction.covector(velocities))).T
         return h / 2 * along[0], h / 2 * (along[1:] - along[0]).T, drag
 
@@ -260,7 +255,7 @@ class Node:
         h, W = float(self.discrete.time_step), X + self.forced.group.identity
         row = self.forced.rows(np.array([self.step]))
         force = self.forced.mean_force(self.configuration[None], W[None], h, row)[0]
-        momentum = legendre(self.free, X, "right") + h / 2 * force
+        momentum = legendre(self.frame.discrete, X, "right") + h / 2 * force
         after = dataclasses.replace(self, configuration=self.configuration @ W, step=self.step + 1)
         return after, self.forced.restrict(momentum)
 

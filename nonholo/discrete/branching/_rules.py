@@ -7,7 +7,8 @@ displacement variety, where nothing is special at angle $\pi$.
 
 import abc
 import dataclasses
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,9 +19,10 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching import _values
 from nonholo.discrete.branching._equations import Equations, Frame, follow, frame_of, has_frame, nearest_body
-from nonholo.discrete.branching._roots import distance
+from nonholo.discrete.branching._roots import Root, distance
 from nonholo.discrete.routes import AbstractBodyStepper
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 
@@ -34,20 +36,20 @@ class Kick(NamedTuple):
     """A step of which all is known but its new displacement.
 
     Attributes:
-        discrete: The discretized system.
-        frame: The frame of its branches.
+        frame: The frame of the branches of the discretized system.
         point: The point over the present displacement.
         now: The equations that it solves.
         ahead: Those that the new one has to solve.
         momentum: The new canonical momentum along the constraint subspace.
+        zeros: The roots over it, where they are known.
     """
 
-    discrete: Discretization
     frame: Frame
     point: Float[np.ndarray, "m"]
     now: Equations
     ahead: Equations
     momentum: Float[np.ndarray, "k"]
+    zeros: Sequence[Root] = ()
 
 
 Following: TypeAlias = tuple[Outcome, Float[np.ndarray, "m"]]
@@ -59,40 +61,47 @@ class AbstractBranchRule(abc.ABC):
     Attributes:
         name: Its name in an orbit.
         is_principal: Whether it is the principal value, which has compiled runs, parts of steps and events.
-        is_nearest: Whether it follows the present value, for which there is a kernel.
-        needs_all_values: Whether it chooses among all values, which has to be done outside of a JAX transformation.
+        is_nearest: Whether it follows the present value, for which there is a kernel. All others choose among all
+            values, which has to be done outside of a JAX transformation.
     """
 
     name: str
     is_principal: ClassVar[bool] = False
     is_nearest: ClassVar[bool] = False
-    needs_all_values: ClassVar[bool] = True
-
-    @property
-    def argument(self) -> BranchRule:
-        """The argument `branch` that asks for it: a name, or a function."""
-        return self.name
 
     def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
-        self._check_left_invariant(where, discrete)
-        if not has_frame(discrete):
-            got = f"{shown(self.argument)} for {type(discrete.system).__name__}, of whose values not all are known"
+        """Refuse a discretization that does not have the rule: by default one of whose values not all are known.
+
+        Every discretization has the principal value, every left-invariant constraint the nearest one.
+        """
+        rule = shown(getattr(self, "function", self.name))
+        if discrete.system.is_spatial and not self.is_principal:
+            changing = "a right-invariant constraint, whose equations change with the pose from step to step"
+            raise error(where, "be 'principal'", f"{rule} for {changing}", "Leave it out.")
+        if not (self.is_principal or self.is_nearest or has_frame(discrete)):
+            got = f"{rule} for {type(discrete.system).__name__}, of whose values not all are known"
             remedy = "All are known of a SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference 'matrix'."
             raise error(where, "be 'principal' or 'nearest'", got, remedy)
-
-    def _check_left_invariant(self, where: str, discrete: Discretization) -> None:
-        if discrete.system.is_spatial:
-            changing = "a right-invariant constraint, whose equations change with the pose from step to step"
-            raise error(where, "be 'principal'", f"{shown(self.argument)} for {changing}", "Leave it out.")
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start that the rule cannot continue from; by default there is none."""
         del where, discrete, displacement
 
-    @abc.abstractmethod
     def following(self, kick: Kick) -> Following:
-        """Return the outcome and the point over the new displacement."""
+        """Return the outcome and the point over the new displacement: the one value that is chosen, or why none is."""
+        _, zeros, X = _values.roots_over(kick.frame, kick.ahead)
+        values = _values.branches_of(kick.frame, kick.momentum, (kick.ahead, zeros, X))
+        choices = self.choices(kick._replace(zeros=zeros), values)
+        if not choices:
+            return Outcome.no_real_branch, kick.point
+        if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
+            return Outcome.branch_unverified, kick.point
+        return Outcome.successful, zeros[choices[0]].point.real
+
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
+        """Return the numbers of the values that may be chosen, by default of all real ones."""
+        del kick
+        return np.flatnonzero(values.is_real).tolist()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -101,14 +110,10 @@ class Principal(AbstractBranchRule):
 
     name: str = "principal"
     is_principal: ClassVar[bool] = True
-    needs_all_values: ClassVar[bool] = False
-
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Every discretization has it."""
 
     def following(self, kick: Kick) -> Following:
         """Return the verified principal root."""
-        return principal_point(kick.discrete, kick.frame, kick.momentum)
+        return principal_point(kick.frame, kick.momentum)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -117,11 +122,6 @@ class Nearest(AbstractBranchRule):
 
     name: str = "nearest"
     is_nearest: ClassVar[bool] = True
-    needs_all_values: ClassVar[bool] = False
-
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Every left-invariant constraint has it."""
-        self._check_left_invariant(where, discrete)
 
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
@@ -135,15 +135,11 @@ class Extreme(AbstractBranchRule):
     name: str
     sign: int
 
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Choose by the norm; a tie is not decided."""
-        roots, values = _values_after(kick)
         real = np.flatnonzero(values.is_real)
-        if len(real) == 0:
-            return _only(kick, roots, values, [])
-        norms = self.sign * _values.momentum_sizes(kick.discrete, kick.frame, values.momentum[real])
-        ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
-        return _only(kick, roots, values, ties.tolist())
+        norms = self.sign * _values.momentum_sizes(kick.frame, values.momentum[real])
+        return real[norms <= norms.min(initial=np.inf) + _TIED * np.abs(norms).max(initial=0.0)].tolist()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -168,14 +164,16 @@ class Region(AbstractBranchRule):
             remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
             raise error(where, "have a start in the inner or the outer region", f"{self.name!r} and {high}", remedy)
 
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Choose by the region, then by continuation."""
-        roots, values = _values_after(kick)
         inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
-            nearest = _nearest_of(kick, roots)
-            inside = [nearest] if nearest in inside else inside
-        return _only(kick, roots, values, inside)
+            code, end = follow(kick.now, kick.ahead, kick.point)
+            distances = [distance(kick.now, end, root.point) for root in kick.zeros]
+            best = int(np.argmin(distances))
+            if code == 0 and distances[best] <= _values.SAME and best in inside:
+                return [best]
+        return inside
 
 
 @dataclasses.dataclass(frozen=True)
@@ -185,22 +183,16 @@ class Chosen(AbstractBranchRule):
     function: Chooser
     name: str = "callable"
 
-    @property
-    def argument(self) -> Chooser:
-        """The function."""
-        return self.function
-
-    def following(self, kick: Kick) -> Following:
+    def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Ask the function, and refuse an answer that is no real value."""
-        roots, values = _values_after(kick)
-        present = displacement_at(kick.discrete, kick.frame, kick.point)
+        present = displacement_at(kick.frame, kick.point)
         index = call("branch(branches, present)", self.function, values, present)
         if index is None:
-            return _only(kick, roots, values, [])
+            return []
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
             remedy = "Choose among np.flatnonzero(branches.is_real), or return None."
             raise error("branch(branches, present)", "return the index of a real branch or None", shown(index), remedy)
-        return _only(kick, roots, values, [int(index)])
+        return [int(index)]
 
 
 PRINCIPAL = Principal()
@@ -223,38 +215,16 @@ def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> Ab
     return rule
 
 
-def principal_point(discrete: Discretization, frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
+def principal_point(frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
     """Return the outcome and the point over the verified principal displacement of a canonical momentum."""
-    code, X = _values.principal_increment(discrete, canonical)
-    return code, np.empty(0) if code != 0 else frame.point(X + discrete.system.group.identity)
+    code, X = _values.principal_increment(frame.discrete, canonical)
+    return code, np.empty(0) if code != 0 else frame.point(X + frame.discrete.system.group.identity)
 
 
-def displacement_at(discrete: Discretization, frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
+def displacement_at(frame: Frame, x: np.ndarray) -> Float[np.ndarray, "N N"]:
     """Return the displacement over a point, in the user's frame."""
-    system = discrete.system
+    system = frame.discrete.system
     return system.from_canonical_frame(frame.increment(x)) + system.group.identity
-
-
-def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
-    roots = _values.roots_over(kick.discrete, kick.frame, kick.momentum)
-    return roots, _values.branches_of(kick.discrete, kick.frame, kick.momentum, roots)
-
-
-def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: list[int]) -> Following:
-    """Return the one value that is left, or why there is none."""
-    if not choices:
-        return Outcome.no_real_branch, kick.point
-    if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
-        return Outcome.branch_unverified, kick.point
-    return Outcome.successful, roots.zeros[choices[0]].point.real
-
-
-def _nearest_of(kick: Kick, roots: _values.Roots) -> int | None:
-    """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = follow(kick.now, roots.equations, kick.point)
-    distances = [distance(kick.now, end, root.point) for root in roots.zeros]
-    best = int(np.argmin(distances))
-    return best if code == 0 and distances[best] <= _values.SAME else None
 
 
 class Place(NamedTuple):
@@ -265,11 +235,12 @@ class Place(NamedTuple):
 
 
 def first_place(
-    owner: str, discrete: Discretization, frame: Frame, rule: AbstractBranchRule, canonical: np.ndarray, demand: Any
+    owner: str, frame: Frame, rule: AbstractBranchRule, canonical: np.ndarray, demand: Any
 ) -> tuple[Outcome, Place | None]:
     """Return the state of a start: of a displacement, of a full momentum, or else the principal one."""
+    discrete = frame.discrete
     if demand is None:
-        code, point = principal_point(discrete, frame, canonical)
+        code, point = principal_point(frame, canonical)
         if code != 0:
             return code, None
         place = Place(point, canonical)
@@ -278,22 +249,41 @@ def first_place(
         k, x = len(frame.stiffness), frame.point(discrete.system.to_canonical_frame(W))
         rows = frame.equations(np.zeros(discrete.system.rank)).residual(x)[0]
         place = Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
-    rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
+    rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(frame, place.point))
     return Outcome.successful, place
 
 
-def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
+def next_place(frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
     """Return the outcome and the state that follows by a rule; the present one where none follows."""
-    h = discrete.time_step
+    h = frame.discrete.time_step
     now = frame.equations(h * place.momentum)
     momentum = place.momentum + frame.momentum(*now.kick(place.point)) / h
-    code, x = rule.following(Kick(discrete, frame, place.point, now, frame.equations(h * momentum), momentum))
+    code, x = rule.following(Kick(frame, place.point, now, frame.equations(h * momentum), momentum))
     return code, Place(x, momentum) if code == 0 else place
 
 
-def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:
+def step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Take a step from a state that need not be on the principal branch; return what `step` returns."""
+    system = discrete.system
+    frame = frame_of("step(discrete=...)", discrete)
+    full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
+    canonical = system.to_canonical(momentum if full is None else system.restrict(full))
+    code, place = first_place("step", frame, rule, canonical, full)
+    after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
+    multipliers = np.full(len(system.annihilator), np.nan)
+    if place is not None:
+        code, following = next_place(frame, rule, place)
+        if code == 0:
+            now, W = (displacement_at(frame, x.point) for x in (place, following))
+            after = legendre(discrete, W - system.group.identity, "left")
+            arriving = legendre(discrete, now - system.group.identity, "right")
+            multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)
+    return after, W, multipliers, np.asarray(int(code))
+
+
+def goal_of(frame: Frame, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "g"]:
     """Return what the kernel of clear steps makes of a canonical momentum."""
-    now = frame.equations(float(discrete.time_step) * momentum)
+    now = frame.equations(float(frame.discrete.time_step) * momentum)
     return now.target if now.lever is None else np.append(now.target, now.push)
 
 
@@ -305,14 +295,10 @@ class RuleStepper(AbstractBodyStepper):
     """Rows are canonical; its own numbers are those of `_Now`.
 
     Attributes:
-        motion: The discretization.
         rule: Which value of the map a step takes.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     rule: AbstractBranchRule
-    with_poses: bool
 
     @property
     def branch(self) -> str:  # type: ignore[override]
@@ -328,10 +314,10 @@ class RuleStepper(AbstractBodyStepper):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
         (reduced, pose), group, frame = first.numbers, self.motion.system.group, frame_of("simulate", self.motion)
-        code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
+        code, place = first_place("simulate", frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
-        goal = goal_of(self.motion, frame, place.momentum)
+        goal = goal_of(frame, place.momentum)
         now = _Now(place, goal, place.momentum, group.matrix_from_pose(pose), 0)
         return np.concatenate((place.momentum, frame.chart(place.point), pose, now.vector)), code
 
@@ -347,7 +333,8 @@ class RuleStepper(AbstractBodyStepper):
             if not (count := len(ahead.point)):
                 break
             points = np.concatenate([now.place.point[None], ahead.point])
-            matrices = _poses_after(now.g, frame.increment(points[:-1]) + group.identity)
+            W = frame.increment(points[:-1]) + group.identity
+            matrices = np.array([*itertools.accumulate(W, np.matmul, initial=now.g)][1:])
             poses = group.normalize_pose(group.pose_from_matrix(matrices))
             at = good + 1 + np.arange(count)
             marks = np.flatnonzero(at % every == 0)
@@ -356,7 +343,7 @@ class RuleStepper(AbstractBodyStepper):
             good, step, place = good + count, now.step + count, Place(points[-1], ahead.momentum[-1])
             begin = now.begin
             if goal is None or step % often == 0:
-                goal, begin = goal_of(self.motion, frame, place.momentum), place.momentum
+                goal, begin = goal_of(frame, place.momentum), place.momentum
             g = matrices[-1] if step % often else group.matrix_from_pose(poses[-1])
             now = _Now(place, goal, begin, g, step)
         state[width:] = now.vector
@@ -372,7 +359,7 @@ class RuleStepper(AbstractBodyStepper):
             ahead, goals = self._clear_places(frame, now, most)
             if len(goals):
                 return Outcome.successful, ahead, goals[-1]
-        code, following = next_place(self.motion, frame, self.rule, now.place)
+        code, following = next_place(frame, self.rule, now.place)
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
 
@@ -382,7 +369,7 @@ class RuleStepper(AbstractBodyStepper):
         Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
         """
         h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
-        first, body = goal_of(self.motion, frame, now.begin), nearest_body(frame.equations(h * now.begin))
+        first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
         goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
         steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
         change = goals[:steps] - first
@@ -391,7 +378,7 @@ class RuleStepper(AbstractBodyStepper):
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
-        own, goal = state[self.width :], len(goal_of(self.motion, frame, state[:k]))
+        own, goal = state[self.width :], len(goal_of(frame, state[:k]))
         ends = np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
         point, goals, begin, g, (step,) = np.split(own, ends)
         place = Place(point.copy(), state[:k].copy())
@@ -411,11 +398,3 @@ class _Now(NamedTuple):
     def vector(self) -> np.ndarray:
         """Its numbers behind the row."""
         return np.concatenate((self.place.point, self.goal, self.begin, self.g.ravel(), [self.step]))
-
-
-def _poses_after(g: np.ndarray, displacements: np.ndarray) -> np.ndarray:
-    """Return the matrices of poses after displacements, one after another."""
-    matrices = np.empty_like(displacements)
-    for step, W in enumerate(displacements):
-        g = matrices[step] = g @ W
-    return matrices

@@ -18,8 +18,7 @@ from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._scheme import matrix_legendre
-from nonholo.discrete._variety import free_rows
+from nonholo.discrete._scheme import free_rows, matrix_legendre
 from nonholo.discrete.branching._equations import FAR, Equations, Frame, frame_of, has_frame
 from nonholo.discrete.branching._roots import by_loops, distinct, disturb, follow_all, roots_of
 from nonholo.discrete.routes import make_route
@@ -138,6 +137,7 @@ class Sections:
         directions: Orthonormal matrices that span the constraint subspace.
         slices: Their components of the inverse inertia times hP, by the entries of W - I.
         units: The same components of momenta.
+        discrete: The discretization of the system; None of no special one.
     """
 
     group: AbstractMatrixGroup
@@ -145,6 +145,7 @@ class Sections:
     directions: Float[np.ndarray, "k N*N"]
     slices: Float[np.ndarray, "k m"]
     units: Float[np.ndarray, "k k"]
+    discrete: Any = None
 
     def equations(self, momentum: Inexact[np.ndarray, "k"]) -> Section:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
@@ -273,4 +274,4 @@ def _sections(discrete: Discretization) -> Sections:
     units = R @ np.linalg.inv(system.constrained_inertia)
     entries = np.eye(group.size * n, group.size**2).reshape(-1, *stretch.shape) / stretch
     momenta = matrix_legendre(group, system.homogeneous_mass_tensor, entries, "left") @ E.T
-    return Sections(group, stretch, Q.T, units @ momenta.T, units)
+    return Sections(group, stretch, Q.T, units @ momenta.T, units, discrete)

@@ -7,8 +7,7 @@ is shared with `analysis`, which names all of them. Reference: [fedorov-zenkov-2
 """
 
 import dataclasses
-from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 import scipy  # its parts load on first use
@@ -166,45 +165,35 @@ class Branches:
         return pandas.DataFrame(columns | {f"momentum_{i}": row for i, row in enumerate(np.transpose(self.momentum))})
 
 
-def values_over(discrete: Discretization, frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
+def values_over(frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
-    canonical = discrete.system.to_canonical(r)
-    return branches_of(discrete, frame, canonical, roots_over(discrete, frame, canonical))
+    canonical = frame.discrete.system.to_canonical(r)
+    return branches_of(frame, canonical, roots_over(frame, frame.equations(frame.discrete.time_step * canonical)))
 
 
 def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values of a step under forces over a restricted momentum in the user's frame."""
-    canonical = node.free.system.to_canonical(r)
-    roots = _roots_of(node.free, node.frame, node.equations(canonical))
-    values = branches_of(node.free, node.frame, canonical, roots, node.principal(canonical))
+    canonical = node.frame.discrete.system.to_canonical(r)
+    roots = roots_over(node.frame, node.equations(canonical))
+    values = branches_of(node.frame, canonical, roots, node.principal(canonical))
     return dataclasses.replace(values, region=np.full(len(values), ""))
 
 
-class Roots(NamedTuple):
-    """The roots of the equations of a restricted momentum, and the displacements minus the identity over them."""
-
-    equations: Equations
-    zeros: list[Root]
-    increments: Inexact[np.ndarray, "B N N"]
+Roots = tuple[Equations, list[Root], Inexact[np.ndarray, "B N N"]]
+"""The equations of a restricted momentum, their roots, and the displacements minus the identity over them."""
 
 
-def roots_over(discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
-    """Return the roots over a canonical restricted momentum, real or complex."""
-    return _roots_of(discrete, frame, frame.equations(discrete.time_step * canonical))
-
-
-def _roots_of(discrete: Discretization, frame: AnyFrame, equations: Equations) -> Roots:
-    system, zeros = discrete.system, roots_of(equations)
+def roots_over(frame: AnyFrame, equations: Equations) -> Roots:
+    """Return the roots of the equations of a restricted momentum, real or complex."""
+    system, zeros = frame.discrete.system, roots_of(equations)
     increments = [system.from_canonical_frame(frame.increment(root.point.astype(complex))) for root in zeros]
-    return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
+    return equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape)
 
 
-def branches_of(
-    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots, principal: Any = None
-) -> Branches:
+def branches_of(frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots, principal: Any = None) -> Branches:
     """Return what is known of the displacements over a canonical momentum; the principal one may be known."""
+    discrete, (equations, zeros, X) = frame.discrete, roots
     system = cast(AbstractLLSystem, discrete.system)
-    equations, zeros, X = roots
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
     multiplicity = np.array([root.multiplicity for root in zeros], dtype=np.int64)
     code, increment = principal or principal_increment(discrete, canonical)
@@ -216,25 +205,22 @@ def branches_of(
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, frame, code, increment, X, is_real),
+        principal=_index_of(frame, code, increment, X, is_real),
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
 
-def momentum_sizes(
-    discrete: Discretization, frame: AnyFrame, momentum: Inexact[Array, "... dim"]
-) -> Float[Array, "..."]:
+def momentum_sizes(frame: AnyFrame, momentum: Inexact[Array, "... dim"]) -> Float[Array, "..."]:
     """Return the norms of full momenta in the body's unit of length, in which those of turns and slides compare."""
-    basis = discrete.system.group.hat(np.eye(discrete.system.group.dim))
+    group = frame.discrete.system.group
+    basis = group.hat(np.eye(group.dim))
     sizes = np.linalg.norm(basis * frame.stretch, axis=(1, 2)) / np.linalg.norm(basis, axis=(1, 2))
     return np.linalg.norm(momentum / sizes, axis=-1)
 
 
-def checked_point(
-    where: str, discrete: Discretization, frame: AnyFrame, displacement: Any
-) -> tuple[Float[np.ndarray, "N N"], Float[np.ndarray, "m"]]:
+def checked_point(where: str, frame: AnyFrame, displacement: Any) -> tuple[Float[np.ndarray, "N N"], np.ndarray]:
     """Return a real displacement and the point over it, refused with its distance from the variety."""
-    system = discrete.system
+    system = frame.discrete.system
     W = array(where, displacement, system.group.identity.shape, f"Pass an element of {system.group} as a matrix.")
     canonical = system.to_canonical_frame(W)
     x = frame.point(canonical)
@@ -254,44 +240,39 @@ def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "
     return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
 
 
-def _index_of(
-    discrete: Discretization, frame: AnyFrame, code: int, increment: Array, X: np.ndarray, is_real: np.ndarray
-) -> int | None:
+def _index_of(frame: AnyFrame, code: int, increment: Array, X: np.ndarray, is_real: np.ndarray) -> int | None:
     """Return the index of the verified principal root, canonical, among displacements, all minus the identity."""
     if code != 0 or not len(is_real):  # all values are too far away
         return None
-    system = discrete.system
-    principal = system.from_canonical_frame(increment)
+    principal = frame.discrete.system.from_canonical_frame(increment)
     away = np.linalg.norm((X - principal) * frame.stretch, axis=(1, 2))
     distances = np.where(is_real, away, np.inf)
     best = int(np.argmin(distances))
     return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal * frame.stretch))) else None
 
 
-def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
+def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum, certified where that can be decided."""
-    canonical = discrete.system.to_canonical(r)
-    balls = _enclosures(owner)(discrete, canonical) if has_frame(discrete) else _FOLLOWED
+    discrete, canonical = frame.discrete, frame.discrete.system.to_canonical(r)
+    balls: Any = _FOLLOWED
+    if has_frame(discrete):
+        with needs("certify", f"{owner}(certify=...)"):
+            from nonholo.discrete.certificate import enclosures
+        balls = enclosures(discrete, canonical)
     if isinstance(balls, str):
-        return dataclasses.replace(values_over(discrete, frame, r), uncertified=balls)
-    system, facts = discrete.system, zip(balls.multiplicity, balls.is_real, strict=True)
-    matrices = system.to_canonical_frame(balls.increment + system.group.identity)
-    points = [frame.point(W.real if real else W) for W, real in zip(matrices, balls.is_real, strict=True)]
-    zeros = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
+        return dataclasses.replace(values_over(frame, r), uncertified=balls)
+    (increment, radius, *facts), system = balls, discrete.system
+    zeros = []
+    for W, m, real in zip(system.to_canonical_frame(increment + system.group.identity), *facts, strict=True):
+        x = frame.point(W.real if real else W)
+        zeros.append(Root(x if x[0].real >= 0 else -x, int(m), bool(real)))
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
-    roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], balls.increment[order])
-    values = branches_of(discrete, frame, canonical, roots)
-    return dataclasses.replace(values, certified=True, radius=balls.radius[order])
+    roots = frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order]
+    values = branches_of(frame, canonical, roots)
+    return dataclasses.replace(values, certified=True, radius=radius[order])
 
 
 _FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"
-
-
-def _enclosures(owner: str) -> Callable[..., Any]:
-    """Import the certificate, or name the extra that it needs."""
-    with needs("certify", f"{owner}(certify=...)"):
-        from nonholo.discrete.certificate import enclosures
-    return enclosures
 
 
 _ROUNDING = 1e-13
@@ -363,11 +344,11 @@ def displacements_over(
     """
     where = "displacements_over"
     if (node := _node(where, discrete, certify, configuration, step)) is not None:
-        return values_at(node, _restricted(f"{where}(restricted_momentum=...)", node.free, restricted_momentum))
+        return values_at(node, _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum))
     frame = frame_for(where, discrete)
     flags(where, certify=certify)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
-    return certified_over(where, discrete, frame, r) if certify else values_over(discrete, frame, r)
+    return certified_over(where, frame, r) if certify else values_over(frame, r)
 
 
 def branches(
@@ -413,17 +394,21 @@ def branches(
     one_start("branches", momentum=momentum, displacement=displacement)
     where = "branches(momentum=...)"
     if displacement is not None:
-        W, _ = checked_point("branches(displacement=...)", discrete, frame, displacement)
+        W, _ = checked_point("branches(displacement=...)", frame, displacement)
         X = W - discrete.system.group.identity
     elif node is None and shape_of(momentum) != (discrete.system.rank,):
-        X = _inverse(where, discrete, frame, momentum)
+        X = _inverse(where, frame, momentum)
     else:
         r = _restricted(where, discrete, momentum)
-        X = _increment(where, discrete, values_over(discrete, frame, r) if node is None else values_at(node, r))
+        values = values_over(frame, r) if node is None else values_at(node, r)
+        if values.principal is None:
+            remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
+            raise error(where, "have a principal displacement", "components that it does not reach", remedy)
+        X = values.displacement[values.principal].real - discrete.system.group.identity
     if node is not None:
         return values_at(*node.following(X))
     r = discrete.system.restrict(legendre(discrete, X, "right"))
-    return certified_over("branches", discrete, frame, r) if certify else values_over(discrete, frame, r)
+    return certified_over("branches", frame, r) if certify else values_over(frame, r)
 
 
 def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[Array, "N N"]:
@@ -448,7 +433,7 @@ def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[
     """
     where = "inverse_discrete_legendre"
     frame = frame_for(where, discrete)
-    return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
+    return _inverse(f"{where}(momentum=...)", frame, momentum) + discrete.system.group.identity
 
 
 def fold_distance(discrete: Discretization, displacement: Any) -> float:
@@ -472,9 +457,8 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
         >>> fold_distance(sleigh, np.eye(3)), round(fold_distance(sleigh, quarter), 12)
         (1.0, 0.0)
     """
-    where = "fold_distance(displacement=...)"
     frame = frame_for("fold_distance", discrete)
-    _, x = checked_point(where, discrete, frame, displacement)
+    _, x = checked_point("fold_distance(displacement=...)", frame, displacement)
     return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
@@ -494,21 +478,13 @@ def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np
     return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
 
 
-def _increment(where: str, discrete: Discretization, values: Branches) -> Float[np.ndarray, "N N"]:
-    """Return the principal displacement minus the identity."""
-    if values.principal is None:
-        remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
-        raise error(where, "have a principal displacement", "components that it does not reach", remedy)
-    return values.displacement[values.principal].real - discrete.system.group.identity
-
-
-def _inverse(where: str, discrete: Discretization, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
-    system = discrete.system
+def _inverse(where: str, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
+    system = frame.discrete.system
     p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
-    values = values_over(discrete, frame, system.restrict(p))
-    distances = np.where(values.is_real, momentum_sizes(discrete, frame, values.momentum - p), np.inf)
-    rounding = _ROUNDING * momentum_sizes(discrete, frame, values.momentum).max(initial=0.0)  # matters at rest
-    near = np.flatnonzero(distances <= SAME * momentum_sizes(discrete, frame, p) + rounding)
+    values = values_over(frame, system.restrict(p))
+    distances = np.where(values.is_real, momentum_sizes(frame, values.momentum - p), np.inf)
+    rounding = _ROUNDING * momentum_sizes(frame, values.momentum).max(initial=0.0)  # matters at rest
+    near = np.flatnonzero(distances <= SAME * momentum_sizes(frame, p) + rounding)
     if len(near) == 0:
         away = np.linalg.norm(values.momentum - p, axis=1)[values.is_real]
         got = f"distance {away.min():.3g}" if len(away) else "components that no displacement has"

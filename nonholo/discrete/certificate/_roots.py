@@ -154,10 +154,8 @@ def _eigenvalues(polynomial: fmpz_poly) -> tuple[int, list[complex]]:
     b = [math.ldexp(int(x >> c), c + exponent * i - largest) for i, (x, c) in enumerate(zip(a, cut, strict=True))]
     if abs(b[d]) < 1e-290:
         return exponent, []
-    companion = np.eye(d, k=-1)
-    companion[0] = [-x / b[d] for x in b[d - 1 :: -1]]
     try:
-        return exponent, np.linalg.eigvals(companion).astype(complex).tolist()
+        return exponent, np.roots(b[::-1]).astype(complex).tolist()
     except np.linalg.LinAlgError:
         return exponent, []
 

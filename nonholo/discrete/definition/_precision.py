@@ -13,10 +13,10 @@ import numpy as np
 from nonholo.base.checks import is_traced
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling, setting
-from nonholo.discrete import _pytrees
+from nonholo.discrete._scheme import register
 
 _float32 = contextvars.ContextVar("float32_allowed", default=False)
-_pytrees.register()
+register()
 
 
 def allow_float32() -> contextlib.AbstractContextManager[None]:

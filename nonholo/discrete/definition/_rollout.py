@@ -17,8 +17,7 @@ from nonholo import kernels
 from nonholo.base.results import Outcome, as_table
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
-from nonholo.discrete._scheme import Scheme, weights
-from nonholo.discrete._variety import free_rows
+from nonholo.discrete._scheme import Scheme, free_rows, weights
 from nonholo.discrete.definition import _step
 from nonholo.discrete.definition._precision import compile_double
 from nonholo.discrete.routes import ScalarStep
@@ -99,16 +98,22 @@ def roll_out(
     (name, value, g), (steps, every) = start, sizes
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    balance = forced if is_balanced(discrete, forced) else None
-    step, at, (m, pose, size) = _step_from(discrete, scalar, (impulse, balance), r, g)
+    forces = impulse, forced if is_balanced(discrete, forced) else None
+    if forces[1] is None and scalar is not None and discrete.order == 2:
+        step, C, at = _closed_step(discrete, scalar, g, impulse)
+        m, pose, size = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
+    else:
+        step, at = _in_stages(discrete, scalar, forces), lambda node: (node.m, node.y, node.g, node.after[1])
+        m, pose, size = r, g, len(discrete.variety.chart)
     rows, control_of = with_policy(controls, discrete.time_step, rows)
     code, nothing = jnp.zeros((), jnp.result_type(int)), jnp.zeros(size, m.dtype)
     none = None if rows is None else jnp.zeros(discrete.system.group.dim, m.dtype)
     begin = _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing), none)
 
     def closed_step(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        def now() -> NodeState:
-            return _state_at(discrete, *at(begin._replace(m=m, g=g))[::2])
+        def now() -> NodeState:  # what a policy sees
+            r, _, place, _ = at(begin._replace(m=m, g=g))
+            return NodeState(place, discrete.system.directions(place) @ discrete.system.restricted_velocity(r, place))
 
         control = None if row is None else control_of(row, now)
         return step(m, g, guess, control)._replace(control=control)
@@ -117,26 +122,9 @@ def roll_out(
     demand = value if name == "momentum" and value.shape == (discrete.system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    pushes = _half_impulses(discrete, (impulse, balance), states, nodes.control)
+    pushes = _half_impulses(discrete, forces, states, nodes.control)
     potential = jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
     return _decode(discrete, nodes, states, demand, (pushes, potential), time)
-
-
-def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
-    """Return what a policy sees of momenta along the constraint and a pose."""
-    return NodeState(g, discrete.system.directions(g) @ discrete.system.restricted_velocity(r, g))
-
-
-def _step_from(
-    discrete: Scheme, scalar: ScalarStep | None, forces: _Forces, r: Array, g: Array
-) -> tuple[_Step, Callable[[_Node], Any], tuple[Array, Array, int]]:
-    """Return the step, what its nodes are in the user's frame, and momenta, pose and length of a chart at the start."""
-    impulse, balance = forces
-    if balance is None and scalar is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, scalar, g, impulse)
-        return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
-    step = _in_stages(discrete, scalar, _stage_of(forces))
-    return step, lambda node: (node.m, node.y, node.g, node.after[1]), (r, g, len(discrete.variety.chart))
 
 
 def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...], rows: Array | None) -> Array:
@@ -228,13 +216,13 @@ def _arrival(part: Any, forces: _Forces, state: _State, y: Array) -> tuple[Array
     return gap, ahead + push, after
 
 
-def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., tuple[Array, ...]]) -> _Step:
-    """Return the step of one or several lengths; `take` gives chart and outcome of each, momenta and pose after it."""
+def _in_stages(discrete: Scheme, scalar: ScalarStep | None, forces: _Forces) -> _Step:
+    """Return the step of one or several lengths."""
 
     def stage(carry: tuple[Any, ...], weight: Array) -> tuple[tuple[Any, ...], Array]:
         r, g, code, row = carry
         part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
-        y, outcome, ahead, after = take(part, own, (r, g, row))
+        y, outcome, ahead, after = _stage(forces, part, own, (r, g, row))
         good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
         return (jnp.where(good, ahead, r), jnp.where(good, after, g), code, row), y
 
@@ -247,21 +235,22 @@ def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., 
     return step
 
 
-def _stage_of(forces: _Forces) -> Callable[..., tuple[Array, ...]]:
-    impulse, balance = forces
-    return functools.partial(_kicked_stage, impulse) if balance is None else functools.partial(_balanced_stage, balance)
+def _stage(forces: _Forces, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
+    """Take the step of order 2, under kicks at its nodes, balanced forces or none.
+
+    Return its chart and outcome, and momenta and pose after it.
+    """
+    (impulse, balance), (r, g, row) = forces, state
+    if balance is None:
+        kick = 0.0 if impulse is None else _step.restricted(part, impulse(r, g, row), g)
+        y, outcome = _step.principal_of(part, scalar, r + kick, g)
+    else:
+        y, outcome = _balanced_root(balance, part, scalar, state)
+    return y, outcome, *_arrival(part, forces, state, y)[1:]
 
 
-def _kicked_stage(impulse: _Impulse | None, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
-    """Take the step of order 2, under kicks at its nodes or none."""
-    r, g, row = state
-    kick = 0.0 if impulse is None else _step.restricted(part, impulse(r, g, row), g)
-    y, outcome = _step.principal_of(part, scalar, r + kick, g)
-    return y, outcome, *_arrival(part, (impulse, None), state, y)[1:]
-
-
-def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
-    """Take the step over momenta r + j whose half impulses j are those at its displacement.
+def _balanced_root(forced: Forced, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, Array]:
+    """Return the chart over momenta r + j whose half impulses j are those at its displacement, and the outcome.
 
     Newton's method from the free displacement, which derivatives do not see.
     """
@@ -277,8 +266,7 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
     code = jnp.where((code == 0) & ~(last <= _CLOSE), int(Outcome.not_converged), code)
-    y = _correct(problem, jnp.where(code == 0, y, 0.0))
-    return y, code, *_arrival(part, (None, forced), state, y)[1:]
+    return _correct(problem, jnp.where(code == 0, y, 0.0)), code
 
 
 @jax.custom_jvp
@@ -358,21 +346,21 @@ def step_slopes(
     States are momenta along the constraint, poses, and charts, with which nothing is solved for; the parts of a
     composition search for their own.
     """
-    impulse, _ = impulse_of(discrete, forced, None, 0)
-    balance, row = forced if is_balanced(discrete, forced) else None, jnp.zeros(discrete.system.group.dim)
+    forces = impulse_of(discrete, forced, None, 0)[0], forced if is_balanced(discrete, forced) else None
+    row = jnp.zeros(discrete.system.group.dim)
 
     def of_parts(r: Array, g: Array, _: Array) -> Array:
         def stage(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], None]:
             slope, r, g = carry
             part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
-            y, _, ahead, after = _stage_of((impulse, balance))(part, own, (r, g, row))
-            return (_slope_of(part, (impulse, balance), (r, g, row), y) @ slope, ahead, after), None
+            y, _, ahead, after = _stage(forces, part, own, (r, g, row))
+            return (_slope_of(part, forces, (r, g, row), y) @ slope, ahead, after), None
 
         begin = jnp.eye(len(row) + len(r)), r, g
         return jax.lax.scan(stage, begin, jnp.asarray(weights(discrete.order)))[0][0]
 
     def of_one(r: Array, g: Array, y: Array) -> Array:
-        return _slope_of(discrete, (impulse, balance), (r, g, row), y)
+        return _slope_of(discrete, forces, (r, g, row), y)
 
     return jax.vmap(of_one if discrete.order == 2 else of_parts)(*states)
 

@@ -1,22 +1,28 @@
-"""Steps by the definition, in JAX: to the principal value or the nearest one, of compositions, and parts of steps."""
+"""Steps by the definition, in JAX: to the principal value or the nearest one, of compositions, and parts of steps.
+
+`step` is one step of the discrete map as a pure JAX function.
+"""
 
 import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error
+from nonholo.base.checks import array, error, is_traced, shape_of, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
+from nonholo.discrete import branching
+from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
-from nonholo.discrete.definition._precision import in_double
-from nonholo.discrete.routes import AbstractBodyStepper, Compact
+from nonholo.discrete.definition._precision import compile_double, in_double
+from nonholo.discrete.routes import AbstractBodyStepper, Compact, ScalarRoute, ScalarStep
 from nonholo.orbit import First, Rows, State, keep_row, write_first
+from nonholo.systems import refuse_fixed_in_space
 
 
 def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[tuple[Array, Array], Array, Array]:
@@ -46,25 +52,26 @@ def whole_steps_by_definition(discrete: Scheme, momenta: np.ndarray, g: np.ndarr
     return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, poses), codes
 
 
+@compile_double
+def next_charts(discrete: Scheme, charts: Float[Array, "K m"], g: Float[Array, "K N N"]) -> Float[Array, "K m"]:
+    """Return the charts after one step to the principal value from each chart and pose."""
+    return jax.vmap(lambda *state: _step.principal_displacement(discrete, *_step.push(discrete, *state))[0])(charts, g)
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class DefinitionStepper(AbstractBodyStepper):
     """Rows are momenta, charts and matrices of poses in the user's frame; a composition is a whole step ahead of them.
 
     Attributes:
-        motion: The discretization.
-        with_poses: Whether poses are saved.
         branch: "principal" or "nearest".
     """
 
-    motion: Any
-    with_poses: bool
     branch: str = "principal"
 
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of momenta, chart coordinates and matrix entries."""
-        system = self.motion.system
-        return system.rank, len(self.motion.variety.chart), system.group.size**2
+        return self.motion.route.sizes
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Solve for the principal displacement, or take the one that is demanded of a run to the nearest value."""
@@ -120,8 +127,7 @@ class DefinitionStepper(AbstractBodyStepper):
         return system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
 
     def _take(self, number: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
-        nearest = self.branch == "nearest"
-        return in_double(_advance, self.motion, nearest, np.int64(number), np.int64(steps), r, y, g)
+        return in_double(_advance, self.motion, self.branch == "nearest", np.int64(number), np.int64(steps), r, y, g)
 
     def _matrix(self, rows: np.ndarray) -> np.ndarray:
         size = self.motion.system.group.size
@@ -180,3 +186,93 @@ def leap(discrete: Scheme, m: np.ndarray, pose: np.ndarray, parts: np.ndarray) -
         r, g = in_double(_push, one, y, g)
         r, code, chart = r / part, code or int(outcome), y if chart is None else chart
     return code, chart, applied(system.frame_map, r), (g @ frame).ravel()
+
+
+class StepResult(NamedTuple):
+    """The state after a step.
+
+    Attributes:
+        momentum: P_{k+1}, shape (dim,).
+        displacement: W_{k+1}, whose momentum is P_{k+1}.
+        multipliers: The impulses between P_k and P_{k+1}, shape (s,).
+        outcome: An `Outcome` as an integer array; where it is not `successful` the other fields are NaN.
+    """
+
+    momentum: Float[Array, "dim"]
+    displacement: Float[Array, "N N"]
+    multipliers: Float[Array, "s"]
+    outcome: Array
+
+
+def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule = "principal") -> StepResult:
+    r"""Take one step of the discrete map: from $P_k$ to $P_{k+1}$, with the displacement $W_{k+1}$ at the new momentum.
+
+    $$ P_{k+1} = \mathrm{Ad}^*_{W_k} P_k + \sum_j \lambda_j a^j, \qquad P_k = P(W_k),\ P_{k+1} = P(W_{k+1}). $$
+
+    A pure function: it works under `jax.jit`, `jax.vmap` and `jax.grad` (with respect to the momentum and to the
+    numbers of the system) and never raises there. Eager calls run in 64 bits and return NumPy arrays; traced calls must
+    be 64-bit, or stand inside `allow_float32`.
+
+    Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).
+
+    Args:
+        discrete: The discretized system.
+        momentum: P_k on the momentum locus, or its components along the constraint subspace.
+        branch: As in `simulate`. With "principal" and "nearest" a step can be traced; "nearest" then starts at the
+            principal displacement of the momentum, as it always does for components along the subspace.
+
+    Returns:
+        The new state and the outcome.
+
+    Raises:
+        ValueError: A wrong shape, a value that is not finite, an unknown branch or one that the system does not
+            have, a right-invariant constraint (whose step depends on the configuration: use `simulate`); with another
+            branch than "principal" a full momentum off the locus.
+        TypeError: Traced 32-bit input.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1)
+        >>> after = nh.step(sleigh, np.array([0.0, 1.0, 0.0]))
+        >>> after.momentum, int(after.outcome)
+        (array([0., 1., 0.]), 0)
+    """
+    as_discretization("step(discrete=...)", discrete)
+    got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
+    refuse_fixed_in_space("step(discrete=...)", discrete.system, "Use simulate(..., steps=1).", got)
+    k, dim = discrete.system.constraint_subspace.shape
+    size = k if shape_of(momentum) == (k,) else dim
+    where = "step(momentum=...)"
+    value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
+    in_jax = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
+    rule = branching.checked_rule("step", discrete, branch)
+    if in_jax and not (rule.is_principal or rule.is_nearest):
+        got = f"{shown(branch)} under a JAX transformation"
+        raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
+    if rule.is_principal or in_jax or not branching.has_frame(discrete):
+        route = discrete.route
+        scalar_step = jax.tree.map(_step.traceable, route.step) if isinstance(route, ScalarRoute) else None
+        return in_double(_one_step, discrete, scalar_step, not rule.is_principal, value)
+    return StepResult(*branching.step_by_rule(discrete, rule, value))
+
+
+@equinox.filter_jit
+def _one_step(discrete: Discretization, scalar_step: ScalarStep | None, nearest: bool, momentum: Array) -> StepResult:
+    system = discrete.system
+    subspace = jnp.asarray(system.constraint_subspace)
+    full, nowhere = momentum.shape[0] != subspace.shape[0], system.group.identity
+    y, code = _step.principal_of(discrete, scalar_step, subspace @ momentum if full else momentum, nowhere)
+    if full:
+        gap = _step.momentum_of(discrete, y, nowhere, "left") - momentum
+        is_off = jnp.sum(gap**2) > _step.ON_LOCUS**2 * jnp.sum(momentum**2)
+        code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
+    arriving = _step.momentum_of(discrete, y, nowhere, "right")
+    if nearest:
+        following, later = _step.nearest_displacement(discrete, y, subspace @ arriving)
+    else:
+        following, later = _step.principal_of(discrete, scalar_step, subspace @ arriving, nowhere)
+    code = jnp.where(code == 0, later, code)
+    after = _step.momentum_of(discrete, following, nowhere, "left")
+    multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
+    good = code == 0
+    W = _step.displacement_of(discrete, following)
+    return StepResult(*(jnp.where(good, x, jnp.nan) for x in (after, W, multipliers)), outcome=code)

@@ -13,5 +13,4 @@
 
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, reversal_defects
 from nonholo.discrete.routes._choice import make_route
-from nonholo.discrete.routes._forced import FunctionRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, ScalarStep, SecularRoute

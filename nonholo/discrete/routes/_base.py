@@ -14,39 +14,39 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses, write_first
 from nonholo.systems import System
 
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
 class AbstractBodyStepper(AbstractStepper[Orbit]):
     """The steps of a map on a group: rows are momenta, charts and poses in the numbers of the kernel.
 
     Attributes:
         motion: The discretization.
         with_poses: Whether poses are saved.
+        sizes: Numbers of momenta, chart coordinates and pose entries that a row holds.
     """
 
     motion: Any
     with_poses: bool
+    sizes: ClassVar[Any]
 
     @property
     def part_refused(self) -> str | None:
         """Why a step has no parts; None if it has."""
         if self.branch != "principal":
             return f"branch {self.branch!r}: only the principal branch has them"
-        if self.motion.step_needs_pose and not self.with_poses:
+        forced = self.motion.forces
+        needs_pose = self.motion.system.is_spatial or (forced is not None and bool(forced.terms or forced.function))
+        if needs_pose and not self.with_poses:  # of right-invariant constraints, and under some forces
             return "a step that depends on the pose, without reconstruct=True"
         return None
 
     in_threads = False
-
-    @property
-    @abc.abstractmethod
-    def sizes(self) -> tuple[int, int, int]:
-        """Numbers of momenta, chart coordinates and pose entries that a row holds."""
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
@@ -88,14 +88,10 @@ class CompiledStepper(AbstractBodyStepper):
     """The steps of a route with a kernel: rows are as the kernel has them.
 
     Attributes:
-        motion: The discretization.
         route: The route.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     route: Any
-    with_poses: bool
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -124,10 +120,8 @@ class CompiledStepper(AbstractBodyStepper):
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps with the state of the kernel."""
-        width, begin = self.width, 0
-        for column in rows:  # as `write_first` does, which stands in another room
-            column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
-        good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
+        write_first(state, rows)
+        good, code = self.route.advance(state[self.width :], steps, every, tuple([column[1:] for column in rows]))
         keep_row(state, rows, good // every)
         return good, code
 
@@ -149,10 +143,16 @@ class AbstractCompiledRoute(abc.ABC):
     Attributes:
         system: The system.
         time_step: h.
+        name: Its name in stores; a composition has that of what is composed.
+        body: The body as the kernel knows it, a `kernels.AnyBody`; made once.
+        scale: The factor to the momenta of the kernel.
     """
 
     system: System
     time_step: Array
+    name: str
+    body: Any
+    scale: Array
     order: int = 2
     """Of the steps that it takes: 2, or that of a composition."""
     is_scalar: ClassVar[bool] = False
@@ -161,21 +161,6 @@ class AbstractCompiledRoute(abc.ABC):
     """Whether it carries a pose along even where none is kept."""
     part_needs_pose: ClassVar[bool] = False
     """Whether parts of its steps do."""
-
-    @property
-    @abc.abstractmethod
-    def name(self) -> str:
-        """Its name in stores; a composition has that of what is composed."""
-
-    @property
-    @abc.abstractmethod
-    def body(self) -> Any:
-        """The body as the kernel knows it, a `kernels.AnyBody`; made once."""
-
-    @property
-    @abc.abstractmethod
-    def scale(self) -> Array:
-        """The factor to the momenta of the kernel."""
 
     @property
     def single(self) -> "AbstractCompiledRoute":
@@ -277,7 +262,7 @@ class AbstractCompiledRoute(abc.ABC):
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps of a discretization, and saves poses or not: the kernel."""
         del branch
-        return CompiledStepper(motion, self, with_poses)
+        return CompiledStepper(motion, with_poses, self)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
@@ -431,18 +416,13 @@ def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     if poses is None:
         after, _, _ = route.step_each((momenta, charts, None), charts, principal_only=False)
         returning = (-after, -charts, None)
-    else:
-        returning = (-momenta, -charts, _two_ahead(states, charts))
+    else:  # from two steps after each state a right-invariant constraint is run back
+        U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(charts)
+        returning = (-momenta, -charts, np.ascontiguousarray((V @ U @ states.configuration).reshape(poses.shape)))
     back, charts_back, behind = route.step_each(returning, -cayley, principal_only=False)
     gaps = _largest(back + momenta) / _largest(momenta)
     distances = np.maximum(_largest(charts_back + cayley) / _largest(cayley), gaps)
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
-
-
-def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K size"]:
-    """Return the poses two steps after each state, from where a right-invariant constraint is run back."""
-    U, V = states.motion.displaced(states.canonical_chart), states.motion.displaced(following)
-    return np.ascontiguousarray((V @ U @ states.configuration).reshape(len(states), states.system.group.size**2))
 
 
 def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:

@@ -9,7 +9,7 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from operator import attrgetter
-from typing import Any, ClassVar, NoReturn, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -18,8 +18,7 @@ from nonholo.base.calls import FunctionError, UndefinedError, note_fault, number
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete._scheme import weights
-from nonholo.discrete._variety import variety_of
+from nonholo.discrete._scheme import variety_of, weights
 from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, plain, poses_of
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
@@ -53,10 +52,7 @@ class ComposedRoute(AbstractOuterRoute):
         """The body and the weights of the substeps."""
         return kernels.ComposedBody(self.single.body, weights(self.order).copy())
 
-    @property
-    def single(self) -> AbstractCompiledRoute:
-        """The discretization that is composed."""
-        return self.substep
+    single = property(attrgetter("substep"))
 
 
 def forced_route(free: AbstractCompiledRoute, forced: Forced) -> AbstractCompiledRoute:
@@ -124,15 +120,6 @@ class AbstractForcedRoute(AbstractOuterRoute):
             return np.full_like(m, np.nan)
         return m + free.encode(forced.to_canonical(forced.restrict_at(j, g)))
 
-    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
-        """Return the displacements that follow, one step from each state."""
-        return self.parts(states, np.ones(len(states)))[1]
-
-    def whole_steps(self, momenta: Any, g: Any) -> NoReturn:
-        """Refuse: what follows a momentum and a pose depends on the number of the step."""
-        del momenta, g
-        raise error("A step from states alone", "be of a system without forces", "Forced", "Use simulate.")
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForcedRoute(AbstractForcedRoute):
@@ -166,11 +153,9 @@ class FunctionRoute(AbstractForcedRoute):
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
-        failure, m_half = None, np.array(momenta)
-        try:  # the midpoint rule of a half impulse may fail
-            m_half = self._after_half(0, 0, momenta, pose)
-        except OutcomeError:
-            failure = Outcome.no_half_impulse
+        failure, m_half = Outcome.no_half_impulse, np.array(momenta)
+        with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
+            failure, m_half = None, self._after_half(0, 0, momenta, pose)
         code, chart, state = self.free.set_out(m_half, np.array(pose))
         return failure or code, chart, np.append(state, 0.0)
 
@@ -254,10 +239,9 @@ def functions_of(forced: Forced, exact: list[Any], faults: dict[str, str]) -> tu
     return force, 0 if forced.own_potential is None else function_of(forced.own_potential, shape, 1)
 
 
-def _in_python(
-    forced: Forced, exact: list[Any], faults: dict[str, str]
-) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, exact: list[Any], faults: dict[str, str]) -> tuple[Any, Any]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
+    own: Any = forced.own_potential
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
@@ -270,9 +254,7 @@ def _in_python(
         del time, velocity
         out[0] = np.nan
         with note_fault(faults, "potential"):
-            out[0] = number_of(
-                "Forced(potential=...)", cast(Any, forced.own_potential), "Return U of a configuration.", g
-            )
+            out[0] = number_of("Forced(potential=...)", own, "Return U of a configuration.", g)
 
     return force, potential
 

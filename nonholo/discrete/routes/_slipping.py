@@ -10,7 +10,7 @@ Reference: docs/theory/forces.md, Theorem 18.4.
 
 import dataclasses
 import functools
-from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -18,22 +18,16 @@ import numpy as np
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Bool, Float
-from nonholo.discrete._variety import Variety, variety_of
+from nonholo.discrete._scheme import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems.forces import Forced, Widened, friction, update_slope
+from nonholo.systems.forces import Widened, friction, update_slope
 
 _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
 _SEEN = 1e-8  # relative, of what changes a slope
 _STRETCH = 512  # steps that hold, taken at once
-
-
-def slip_route(scheme: Any, forced: Forced, route_of: Callable[[Any], Any]) -> "SlipRoute":
-    """Return the route of rows that may yield."""
-    holding, sliding = (dataclasses.replace(scheme, system=each) for each in (forced.holding, forced.sliding))
-    return SlipRoute(route_of(sliding), forced, route_of(holding), holding)
 
 
 Here = tuple[np.ndarray, np.ndarray]
@@ -70,7 +64,7 @@ class SlipRoute(AbstractForcedRoute):
 
     Attributes:
         free: The route of steps that slide, but for the friction of the grip.
-        hold: The route of steps that hold.
+        hold: The route of steps that hold; its name is that of both.
         holding: The discretization of these.
     """
 
@@ -80,10 +74,7 @@ class SlipRoute(AbstractForcedRoute):
     needs_pose: ClassVar[bool] = True  # type: ignore[override]
     compiled_route: ClassVar[None] = None  # type: ignore[override]
 
-    @property
-    def name(self) -> str:  # type: ignore[override]
-        """The name of the route of steps that hold."""
-        return self.hold.name
+    name = property(attrgetter("hold.name"))
 
     @functools.cached_property
     def body(self) -> Widened:
@@ -104,7 +95,7 @@ class SlipRoute(AbstractForcedRoute):
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> "SlipStepper":
         """Return what takes the steps."""
         del branch
-        return SlipStepper(motion, self, with_poses)
+        return SlipStepper(motion, with_poses, self)
 
     def wide(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical charts of steps that hold as those of the body without the rows."""
@@ -222,8 +213,7 @@ class SlipRoute(AbstractForcedRoute):
                 ahead = self.begin(after, end, time, int(one.step[0]) + int(fraction))
                 chart = ahead.chart if ahead.code == 0 else chart
             rows.append((after, chart, end))
-        momenta, charts, end = (np.array(column) for column in zip(*rows, strict=True))
-        return momenta, charts, end
+        return cast(Compact, tuple(np.array(column) for column in zip(*rows, strict=True)))
 
     def _part(self, one: Orbit, pose: np.ndarray, fraction: float) -> Any:  # type: ignore[override]
         """Return momenta and pose after a fraction of one step, which is of the kind of the whole."""
@@ -251,20 +241,15 @@ class SlipStepper(AbstractBodyStepper):
     holds began, -1 without one, and the state of that run.
 
     Attributes:
-        motion: The discretization.
         route: The route.
-        with_poses: Whether poses are saved.
     """
 
-    motion: Any
     route: SlipRoute
-    with_poses: bool
 
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of canonical momenta, chart coordinates and pose entries."""
-        momenta, charts, _ = self.route.free.sizes
-        return momenta, charts, self.route.body.group.pose_size
+        return *self.route.free.sizes[:2], self.route.body.group.pose_size
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
