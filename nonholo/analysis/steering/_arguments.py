@@ -6,7 +6,8 @@ from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 
-from nonholo.base.checks import array, error, is_integer, pair, shape_of, shown
+from nonholo.base.checks import array, error, is_integer, pair, real_or_complex, shape_of, shown
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 from nonholo.systems import Start, System, direction_lengths, in_group, one_start
@@ -197,12 +198,10 @@ class StateBounds(NamedTuple):
 def _limit(where: str, value: Any, count: int) -> np.ndarray:
     """Return the least or largest value of each row; infinite ones, which bound nothing, are allowed."""
     remedy = "Pass the least and the largest value, numbers or one for each row; infinity for none."
-    try:
-        infinite = np.where(np.isinf(value), value, 0.0)
-    except (TypeError, ValueError):
-        infinite = np.zeros(())
-    finite = np.where(infinite, 0.0, value) if infinite.any() else value
-    return array(where, finite, (count,) if np.ndim(finite) else (), remedy) + infinite + np.zeros(count)
+    raw = real_or_complex(where, value, remedy)
+    infinite = np.where(np.isinf(raw), raw, 0.0)
+    finite = np.where(infinite, 0.0, raw)
+    return array(where, finite, (count,) if raw.ndim else (), remedy) + infinite + np.zeros(count)
 
 
 def state_units(system: System, duration: float) -> tuple[Float[np.ndarray, "dim"], Float[np.ndarray, "k"]]:
@@ -382,7 +381,7 @@ def body_points(g: Float[Array, "... N N"], outline: Float[Array, "points n"]) -
 def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array, "... points n"]:
     """Return where points of a body are at poses, or with coordinates x and y, turned by the heading if it has one.
 
-    The points are given, or a function of the configuration.
+    The points are given, or a function of the configuration that JAX traces.
     """
     if not system.coordinates:
         return body_points(q, outline)
@@ -391,5 +390,13 @@ def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array,
     turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]
     c, s = xp.cos(turn), xp.sin(turn)
     rows = xp.stack([xp.stack([c, s], axis=-1), xp.stack([-s, c], axis=-1)], axis=-2)
-    points = outline(q[..., : system.dimension]) if callable(outline) else outline
-    return xp.stack([x, y], axis=-1)[..., None, :] + points @ rows
+    return xp.stack([x, y], axis=-1)[..., None, :] + _outline_at(outline, q[..., : system.dimension]) @ rows
+
+
+def _outline_at(outline: Any, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
+    """Return points of a body with configurations; a function of NumPy's is called with each of them."""
+    if not callable(outline) or not isinstance(q, np.ndarray):
+        return outline(q) if callable(outline) else outline
+    with double_precision():
+        rows = np.array([outline(row) for row in q.reshape(-1, q.shape[-1])])
+    return rows.reshape(*q.shape[:-1], *outline.shape)

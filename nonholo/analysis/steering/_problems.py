@@ -6,7 +6,6 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 
 import dataclasses
 import math
-import operator
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -21,12 +20,11 @@ from nonholo.analysis.steering._shooting import driven_side_by_side, goal_gap, g
 from nonholo.analysis.steering._steer import driven
 from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
-from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, free_rows, step_residual
+from nonholo.discrete.definition import Rollout, free_rows, in_double, step_residual
 from nonholo.groups import SE
-from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, in_double, place
+from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, place
 from nonholo.simulation.traced import rollout
 from nonholo.systems import Forced
 
@@ -65,9 +63,8 @@ class GroupNodes(NamedTuple):
         """Return where the points of the outline are, (points, n)."""
         return _arguments.body_points(self.state(x)[0], self.outline)
 
-    def numbers(self, z: Array, x: Array) -> Array:
+    def numbers(self, _z: Array, x: Array) -> Array:
         """Return what bounds of states are about: entries of the pose, momenta."""
-        del z
         g, momenta = self.state(x)
         return jnp.append(g, momenta)
 
@@ -79,38 +76,14 @@ class GroupNodes(NamedTuple):
         return g, x[rows * group.size :]
 
 
-@dataclasses.dataclass(frozen=True)
-class MovingOutline:
-    """Points in axes of the body that depend on the configuration.
-
-    Attributes:
-        function: Of a configuration, as JAX traces it.
-    """
-
-    function: Any
-    shape = property(operator.attrgetter("function.shape"))
-
-    @classmethod
-    def of(cls, system: LagrangeDAlembert, function: Callable[[Array], Array]) -> "MovingOutline":
-        """Return the checked outline of a system."""
-        where, of = "steer(outline=...)", f"{system.dimension} coordinates"
-        q = jax.ShapeDtypeStruct((system.dimension,), float)
-        outline = cls(lagrange_dalembert.trace(where, function, of, (q,)))
-        if len(outline.shape) != 2 or outline.shape[1] != 2 or not outline.shape[0]:
-            remedy = "Return points in axes of the body, x ahead."
-            raise error(where, "return an array of shape (points, 2)", f"shape {outline.shape}", remedy)
-        return outline
-
-    def __len__(self) -> int:
-        return self.shape[0]
-
-    def __call__(self, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
-        """Return the points at one configuration or many."""
-        if not isinstance(q, np.ndarray):
-            return self.function(q)
-        with double_precision():
-            rows = np.array([self.function(jnp.asarray(row)) for row in q.reshape(-1, q.shape[-1])])
-        return rows.reshape(*q.shape[:-1], *self.shape)
+def moving_outline(system: LagrangeDAlembert, function: Callable[[Array], Array]) -> Any:
+    """Return the checked points in axes of the body of a configuration, as JAX traces them."""
+    where, of = "steer(outline=...)", f"{system.dimension} coordinates"
+    outline = lagrange_dalembert.trace(where, function, of, (jax.ShapeDtypeStruct((system.dimension,), float),))
+    if len(outline.shape) != 2 or outline.shape[1] != 2 or not outline.shape[0]:
+        remedy = "Return points in axes of the body, x ahead."
+        raise error(where, "return an array of shape (points, 2)", f"shape {outline.shape}", remedy)
+    return outline
 
 
 class CoordinateNodes(NamedTuple):
@@ -119,7 +92,7 @@ class CoordinateNodes(NamedTuple):
     Attributes:
         system: The system.
         time_step: h.
-        outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `MovingOutline`.
+        outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `moving_outline`.
         unit: Units of velocities in which each has the same energy.
         directions: Rows span the admissible velocities near the goal, in these; none where its velocity is free.
         velocity: The last velocity.
@@ -140,9 +113,8 @@ class CoordinateNodes(NamedTuple):
         n = self.system.dimension
         return math.prod(self.system.place_shape) + n, n + self.system.constraints, n
 
-    def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
+    def residual(self, x: Array, z: Array, f: Array, after: Array, _row: Array) -> Array:
         """Return the equations of a step; there is no table of forces."""
-        del row
         return equations.step_residual(self.system, self.state(x), z, self.state(after), f, self.time_step)
 
     def goal_gap(self, x: Array) -> Array:
@@ -305,7 +277,8 @@ def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarr
     system, h, n = discrete.system.plain, np.float64(discrete.time_step), discrete.system.dimension
     if goal.velocity is None:
         return CoordinateNodes(system, h, way.outline, unit, np.zeros((0, n)), np.zeros(n), goal.pose)
-    directions = np.linalg.svd(in_double(equations.forms, system, last) * unit)[2][system.constraints :]
+    forms = lagrange_dalembert.in_double(equations.forms, system, last)
+    directions = np.linalg.svd(forms * unit)[2][system.constraints :]
     return CoordinateNodes(system, h, way.outline, unit, directions, goal.velocity, goal.pose)
 
 
@@ -318,7 +291,8 @@ def _coordinate_gap(program: Program, goal: Goal, way: Way, extent: Extent, orbi
     off = [abs(q[-1, i] - number) / sizes[i] for i, number in goal.coordinates.items()]
     last = np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1])
     momenta = np.full(len(nodes.directions), extent.far / extent.duration)
-    off += np.abs(program.goal_gap(last) / np.append(sizes[: 0 if goal.pose is None else None], momenta)).tolist()
+    units = np.append(sizes[: 0 if goal.pose is None else None], momenta)
+    off += np.abs(in_double(nodes.goal_gap, last) / units).tolist()
     flat = q.reshape(len(q), -1)
     off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], flat[1:]], axis=1)))
     if way.outline.shape[-1]:

@@ -244,7 +244,7 @@ def _steered_in_coordinates(
     n, start = discrete.system.dimension, _problems.checked_start(discrete, ends[0])
     q, v = start[0][: discrete.system.shapes[0][0]], start[1]
     if callable(way.outline):
-        way = way._replace(outline=_problems.MovingOutline.of(discrete.system, way.outline))
+        way = way._replace(outline=_problems.moving_outline(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = _arguments.limits_of_steps(bounds[0], steps, n)
     goal = _problems.checked_goal(discrete, ends[1], is_free=bool(way.via))

@@ -59,14 +59,10 @@ class Steps(NamedTuple):
         apart = self.nodes.places(x)[:, None] - self.centers
         return ((jnp.sum(apart**2, axis=-1) - self.radii**2) / (2 * self.radii)).ravel()
 
-    def cost(self, window: Array) -> Array:
-        """Return the effort of a step."""
-        f = self.parts(window)[2]
-        return self.time_step * f @ f / 2
-
     def lagrangian(self, window: Array, row: Array, weights: Array, weight: Array) -> Array:
-        """Return the weighted sum of cost and conditions."""
-        return weight * self.cost(window) + weights @ self.conditions(window, row)
+        """Return the weighted sum of the effort of a step and its conditions."""
+        f = self.parts(window)[2]
+        return weight * (self.time_step * f @ f / 2) + weights @ self.conditions(window, row)
 
 
 @equinox.filter_jit
@@ -114,7 +110,7 @@ class Program:
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
         (count, ends), bounds = self.shape, self.steps.bounds
-        clear = np.zeros(len(self.steps.radii) * len(self.steps.nodes.outline))
+        clear = np.zeros(len(self.steps.radii) * self.steps.nodes.outline.shape[0])
         zeros = np.zeros(count - len(clear) - len(bounds.low))
         steps = np.concatenate([zeros, clear, bounds.low]), np.concatenate([zeros, clear + np.inf, bounds.high])
         least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
@@ -150,10 +146,6 @@ class Program:
         others = (J / _power((J * unit).max(axis=1).toarray())[:, None]).max(axis=0).toarray()
         unit = _power(np.where(unit > 0, unit, 1 / _power(others)))
         return unit, _power((J * unit).max(axis=1).toarray())
-
-    def goal_gap(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
-        """Return what vanishes at the goal, of a last state."""
-        return in_double(self.steps.nodes.goal_gap, state)
 
     def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
         """Return the effort and its derivative."""
@@ -317,12 +309,9 @@ def minimize(
     IPOPT sees all of them in units.
     """
     (unit, rows), (least, most) = units, program.limits
-    numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
-    conditions = casadi.Sparsity.dense(len(rows))
+    numbers, conditions, one, nothing = map(casadi.Sparsity.dense, (program.unknowns, len(rows), 1, 0))
     patterns: Any = program.slope_places.pattern, program.curvature_places.pattern
-    slopes, curvatures = (
-        casadi.Sparsity(each.shape[0], each.shape[1], each.indptr.tolist(), each.indices.tolist()) for each in patterns
-    )
+    slopes, curvatures = (casadi.Sparsity(*x.shape, x.indptr.tolist(), x.indices.tolist()) for x in patterns)
     scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
     effort = max(program.cost(np.where(bounds[0] < bounds[1], unit, 0.0))[1] * unit) or 1.0
 
