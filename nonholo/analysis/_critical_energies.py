@@ -9,7 +9,7 @@ the circle of axes. For n > 3 it has a lower bound. Theory: docs/theory/critical
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import scipy  # its parts load on first use
@@ -210,44 +210,21 @@ def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
     return points
 
 
-class Directions(NamedTuple):
-    r"""The numbers that the energy and the folds over directions u need.
+def over_directions(u: Float[np.ndarray, "K 2"], B: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, ...]:
+    r"""Return what energy and folds over unit vectors need.
 
-    Attributes:
-        b: $u\cdot Bu$.
-        slope: $c\cdot Bu/D$.
-        sharp: $s = (c\cdot u^\perp)/\sqrt D$.
-        along: $(c\cdot u)\,b/D$.
+    It is $b = u\cdot Bu$, $p = c\cdot Bu/D$, $s = (c\cdot u^\perp)/\sqrt D$, $\gamma = (c\cdot u)\,b/D$.
     """
-
-    b: Float[np.ndarray, "K"]
-    slope: Float[np.ndarray, "K"]
-    sharp: Float[np.ndarray, "K"]
-    along: Float[np.ndarray, "K"]
-
-    @classmethod
-    def over(cls, u: Float[np.ndarray, "K 2"], B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> "Directions":
-        """Return them for unit vectors."""
-        D, Bu = np.linalg.det(B), u @ B
-        b = np.einsum("ki,ki->k", u, Bu)
-        return cls(b, Bu @ c / D, (u[:, 0] * c[1] - u[:, 1] * c[0]) / np.sqrt(D), (u @ c) * b / D)
-
-    def ridge(self) -> Float[np.ndarray, "K"]:
-        r"""Return $x = \cot(\theta/2)$ where the energy is greatest on the ray; 0, half-turns, where it only grows."""
-        return np.sqrt(np.maximum(1 - 2 * self.sharp**2, 0.0))
-
-    def fold(self) -> Float[np.ndarray, "K"]:
-        r"""Return the first fold on the ray, the largest root of $x^3 - px^2 - (1 - 2s^2)x + 2\gamma - p$."""
-        rest = zip(-self.slope, 2 * self.sharp**2 - 1, 2 * self.along - self.slope, strict=True)
-        return np.array([max(real_cubic_roots(1.0, *map(float, row))[1:]) for row in rest])
-
-    def energy(self, x: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
-        r"""Return $b\,(x^2 + s^2)/(1 + x^2)^2$, the energy times $h^2/2$."""
-        return self.b * (x * x + self.sharp**2) / (1 + x * x) ** 2
+    D, Bu = np.linalg.det(B), u @ B
+    b = np.einsum("ki,ki->k", u, Bu)
+    return b, Bu @ c / D, (u[:, 0] * c[1] - u[:, 1] * c[0]) / np.sqrt(D), (u @ c) * b / D
 
 
 def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float:
     r"""Return $h^2/2$ times the least energy at which a ray from the identity meets a fold or its ridge.
+
+    With $x = \cot(\theta/2)$ the first fold is the largest root of $x^3 - px^2 - (1 - 2s^2)x + 2\gamma - p$. The energy
+    $b\,(x^2 + s^2)/(1 + x^2)^2$ is greatest on the ridge, $x^2 = 1 - 2s^2$, or at half-turns, where it only grows.
 
     Args:
         B: Inertia along the constraint, symmetric and positive definite.
@@ -258,8 +235,11 @@ def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float
 
     def least(angle: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
         u = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ root
-        over = Directions.over(u / np.linalg.norm(u, axis=1)[:, None], B, c)
-        return over.energy(np.maximum(over.fold(), over.ridge()))
+        b, p, s, gamma = over_directions(u / np.linalg.norm(u, axis=1)[:, None], B, c)
+        rows = zip(-p, 2 * s**2 - 1, 2 * gamma - p, strict=True)
+        fold = np.array([max(real_cubic_roots(1.0, *map(float, row))[1:]) for row in rows])
+        x = np.maximum(fold, np.sqrt(np.maximum(1 - 2 * s**2, 0.0)))
+        return b * (x * x + s**2) / (1 + x * x) ** 2
 
     angles = _angles(B, c, root)
     samples = least(angles)

@@ -252,7 +252,10 @@ class Deltoid:
 
     def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:
         r"""Return $27 - 18|\varkappa|^2 + 8\,\mathrm{Re}\,\varkappa^3 - |\varkappa|^4$, positive inside."""
-        trace = _trace(self.discrete, self._plane("discriminant", restricted_momentum))
+        strip, momentum = _strip(self.discrete), self._plane("discriminant", restricted_momentum)
+        pi, p1 = np.moveaxis(strip.canonical_momenta(momentum) * float(self.discrete.time_step), -1, 0)
+        phat = strip.arm * p1 + 2 * strip.mass * strip.arm**2
+        trace = (-(2 * phat + strip.inertia) + 2j * pi) / strip.inertia
         square = np.abs(trace) ** 2
         return 27 - 18 * square + 8 * np.real(trace**3) - square**2
 
@@ -316,14 +319,6 @@ def deltoid(discrete: Discretization) -> Deltoid:
 
 def _strip(discrete: Discretization) -> Strip:
     return cast(Strip, planar.planar_map("Deltoid", discrete)[1])
-
-
-def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
-    """Return kappa of restricted momenta."""
-    strip = _strip(discrete)
-    pi, p1 = np.moveaxis(strip.canonical_momenta(restricted) * float(discrete.time_step), -1, 0)
-    phat = strip.arm * p1 + 2 * strip.mass * strip.arm**2
-    return (-(2 * phat + strip.inertia) + 2j * pi) / strip.inertia
 
 
 def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray, "... 2"]:

@@ -179,11 +179,6 @@ class SteinerSurface(NamedTuple):
         return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
 
 
-def _pencil(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "m 3 3"]:
-    _, values, rows = np.linalg.svd(_four(forms))
-    return _matrix(rows[np.count_nonzero(values > _FLAT) :])
-
-
 def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
     """Return the real singular matrices of a pencil; the basis is turned so that none is at infinity."""
     turns = np.pi * np.arange(7) / 7
@@ -306,7 +301,9 @@ class Disc(PlanarBody):
         forms = np.array([first, second, third])
         size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
         axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ self.frame.T
-        return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))
+        _, values, rows = np.linalg.svd(_four(forms / (2 * size)))
+        pencil = _matrix(rows[np.count_nonzero(values > _FLAT) :])
+        return SteinerSurface(forms / (2 * size), pencil, axes * time_step / (2 * size))
 
 
 def _quarter_turned(z: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
