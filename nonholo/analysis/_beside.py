@@ -54,13 +54,8 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
         change[:count, dim:] = np.diff(momenta, axis=0)
     rows = np.zeros((len(slope), 0, slope.shape[-1]))
     names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
-    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, _frame(slope[0], dim))
+    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, True)
     return local, functools.partial(_pose_beside, system, g, r)
-
-
-def _frame(slope: Float[np.ndarray, "m m"], places: int) -> Float[np.ndarray, "m m"]:
-    """Return the rows of the places of derivatives, and zeros."""
-    return np.where(np.arange(len(slope))[:, None] < places, slope, 0.0)
 
 
 def _pose_beside(system: Any, g: Array, r: Array, xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
@@ -211,9 +206,8 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     pairs = zip(steady, tangents.slopes(motion, *others), strict=True)
     change, slope, rows = (np.concatenate(pair) for pair in pairs)
     names = _names_of_coordinates(motion.system)
-    frame = None if coordinates else _frame(steady[1][0], size)
     times = np.append(0.0, tangents.LATER)
-    local = Local(names, size, state, change, slope, rows, times, units, frame)
+    local = Local(names, size, state, change, slope, rows, times, units, not coordinates)
     return local, functools.partial(_coordinates_beside, motion, x, v)
 
 

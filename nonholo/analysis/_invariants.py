@@ -84,42 +84,27 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     if len(any_orbit(where := "invariants(orbit=...)", orbit)) == 0:
         raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
-    work = orbit.known_work
-    return Invariants(
-        states=len(orbit),
-        steps=int(np.ptp(orbit.step)) if orbit.is_discrete else 0,
-        energy_drift=_energy_drift(orbit.energy, work, forced=driven),
-        outcome=orbit.outcome,
-        work=float(work[-1]) if driven else None,
-        **(_of_body(orbit) if isinstance(orbit, Orbit) else _in_coordinates(orbit)),
-    )
+    energy, work, steps = orbit.energy, orbit.known_work, int(np.ptp(orbit.step)) if orbit.is_discrete else 0
+    size = np.abs(energy if driven else energy[0]).max() or 1.0
+    drift = float(np.abs(energy - energy[0] - work).max() / size)
+    rest = _of_body(orbit) if isinstance(orbit, Orbit) else _in_coordinates(orbit)
+    return Invariants(len(orbit), steps, drift, *rest, orbit.outcome, float(work[-1]) if driven else None)
 
 
-def _in_coordinates(orbit: Any) -> dict[str, Any]:
-    return {
-        "constraint_residual": float(orbit.constraint_residual.max()),
-        "group_residual": None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration))),
-        "reversal_defect": None,
-        "largest_step_angle": None,
-    }
+def _in_coordinates(orbit: Any) -> tuple[float, float | None, None, None]:
+    """Return the residuals of constraint and group; defect and angle are not measured."""
+    off_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
+    return float(orbit.constraint_residual.max()), off_group, None, None
 
 
-def _of_body(orbit: Orbit) -> dict[str, Any]:
-    group = orbit.system.group
-    stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
+def _of_body(orbit: Orbit) -> tuple[float, float | None, float | None, float | None]:
+    """Return the residuals of constraint and group, the reversal defect and the largest angle of a step."""
+    stride = max(1, len(orbit) // (_SAMPLED if orbit.system.group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
-    discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
-    return {
-        "constraint_residual": float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
-        "group_residual": None if orbit.canonical_pose is None else _group_residual(sample),
-        "reversal_defect": None if discrete is None else _reversal_defect(discrete, sample),
-        "largest_step_angle": None if orbit.cayley is None else _largest_angle(sample),
-    }
-
-
-def _energy_drift(energy: Float[np.ndarray, "K"], work: Any, *, forced: bool) -> float:
-    size = np.abs(energy if forced else energy[0]).max()
-    return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
+    residual = float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0))
+    off_group = None if orbit.canonical_pose is None else _group_residual(sample)
+    angle = None if orbit.cayley is None else _largest_angle(sample)
+    return residual, off_group, _reversal_defect(sample), angle
 
 
 def _largest_angle(orbit: Orbit) -> float | None:
@@ -142,8 +127,11 @@ def _group_residual(orbit: Orbit) -> float:
     return float(change if group.pose_size < group.size**2 else max(change, group.residual(orbit.configuration).max()))
 
 
-def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled_route if discrete.forces is None else None
+def _reversal_defect(orbit: Orbit) -> float | None:
+    """Return the largest miss of a step forward and back; None of flows, forced motions and those not compiled."""
+    motion = orbit.motion
+    is_free = isinstance(motion, Discretization) and motion.forces is None
+    route = motion.route.compiled_route if is_free else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))

@@ -42,8 +42,7 @@ class Local(NamedTuple):
         rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
         times: Those of the first states, which are the steady motion.
         units: Units of the velocities, in which each has the same kinetic energy, shape (n,).
-        frame: How places move that are seen from a frame which moves with the state: the derivatives of their rates,
-            and zeros as those of the velocities, shape (m, m); None in coordinates.
+        is_carried: Whether places are seen from a frame that moves with the state; those in coordinates are not.
     """
 
     names: tuple[str, ...]
@@ -54,7 +53,7 @@ class Local(NamedTuple):
     rows: Float[np.ndarray, "K s m"]
     times: Float[np.ndarray, "1+L"]
     units: Float[np.ndarray, "n"]
-    frame: Float[np.ndarray, "m m"] | None
+    is_carried: bool
 
 
 class Reduced(NamedTuple):
@@ -154,10 +153,6 @@ def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarra
     while np.any(more := depends[matters].any(axis=0) & ~matters):
         matters |= more
     return matters
-
-
-Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Takes changes of coordinates and of velocities to a configuration and a body velocity."""
 
 
 @result
@@ -269,8 +264,8 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     return Linearization(matrix, names, ignorable, step, equations.rate)
 
 
-def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
-    """Return the changes beside a state, and the function that gives the states beside it."""
+def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
+    """Return the changes beside a state, and what takes changes of places and velocities to a state beside it."""
     if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
         return _motions(owner).beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
@@ -349,25 +344,20 @@ def _steady_state(subject: Any, flow: Any, state: tuple[Any, Any]) -> tuple[Any,
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", subject, *state)
         equations = _equations_of(flow, local)
-        change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
+        change, units = _correction(local._replace(is_carried=False) if is_rest else local, equations)
         state = beside(-change[: local.places], -change[local.places :])
         velocity = local.state[local.places :]
         begin = begin or (velocity, equations.units[local.places :])
         if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
-            if _has_stopped(velocity, *begin):
+            speed, before = (np.abs(v / begin[1]).max(initial=0.0) for v in (velocity, begin[0]))
+            if speed < _AT_REST * before:
                 remedy = "Guess closer to one, or leave body_velocity out."
                 raise error(_NEAR, "be near a steady motion", "one from which corrections lead to rest", remedy)
             return state
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(_NEAR, "be near a steady motion", got, "Guess closer to one.")
-
-
-def _has_stopped(velocity: np.ndarray, first: np.ndarray, units: np.ndarray) -> bool:
-    """Return whether nothing is left of a velocity, in units of where it was."""
-    speed, before = (np.abs(v / units).max(initial=0.0) for v in (velocity, first))
-    return bool(speed < _AT_REST * before)
 
 
 def _equations_of(flow: Any, local: Local) -> Reduced:
@@ -396,11 +386,12 @@ def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
     steady if its velocity is constant at all its poses: $\dot w(g e^{\xi} e^{t (v + w)}, v + w) = 0$.
     """
     states, units = equations.states, equations.units
-    if local.frame is None:
+    if not local.is_carried:
         sizes, matrix, change = units[states], equations.matrix, local.change[0][states]
     else:
         rates, count = slice(local.places, None), len(local.times)
-        transport = scipy.linalg.expm(local.times[:, None, None] * local.frame) @ equations.directions
+        frame = np.where(np.arange(len(units))[:, None] < local.places, local.slope[0], 0.0)
+        transport = scipy.linalg.expm(local.times[:, None, None] * frame) @ equations.directions
         sizes, matrix = np.tile(units[rates], count), np.concatenate(local.slope[:count, rates] @ transport)
         change = local.change[:count, rates].ravel()
     return matrix * (units[states] / sizes[:, None]), change / sizes / equations.extent
