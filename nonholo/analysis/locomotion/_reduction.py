@@ -21,6 +21,7 @@ from scipy.linalg import qr
 
 from nonholo.analysis.locomotion._equations import unit_rows
 from nonholo.base.numerics import double_precision
+from nonholo.base.traced import call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.lagrange_dalembert import checked_rows, checked_value, equations
@@ -44,7 +45,6 @@ class Planar:
     pose: tuple[int, int, int]
     shape: tuple[int, ...]
     group: ClassVar[AbstractMatrixGroup] = SE(2)
-    has_energy: ClassVar[bool] = True
 
     def rows(self, pose: Array, s: Array) -> Array:
         """Return the constraints at a pose (x, y, theta) as rows W = (B, C)."""
@@ -60,22 +60,17 @@ class Planar:
 class Reduced:
     """A `ShapedBody`, for which all poses are alike."""
 
-    body: Any
+    system: Any
 
     @property
     def group(self) -> AbstractMatrixGroup:
         """The group."""
-        return self.body.group
-
-    @property
-    def has_energy(self) -> bool:
-        """Whether it has a Lagrangian."""
-        return self.body.lagrangian is not None
+        return self.system.group
 
     def rows(self, _pose: Array, s: Array) -> Array:
         """Return the constraints as rows W = (B, C)."""
         n = self.group.dim + len(s)
-        forms = self.body.constraint_forms
+        forms = self.system.constraint_forms
         return jnp.zeros((0, n)) if forms is None else jnp.asarray(forms(s), float)
 
     def constraint_forms(self, q: Array) -> Array:
@@ -93,7 +88,7 @@ class Reduced:
 
     def lagrangian(self, _pose: Array, s: Array, u: Array) -> Array:
         r"""Return the Lagrangian of u = $(\xi, \dot s)$."""
-        return jnp.asarray(self.body.lagrangian(s, *jnp.split(u, [self.group.dim])), float)
+        return jnp.asarray(self.system.lagrangian(s, *jnp.split(u, [self.group.dim])), float)
 
 
 Reduction: TypeAlias = Planar | Reduced
@@ -102,15 +97,12 @@ Reduction: TypeAlias = Planar | Reduced
 def call(function: Callable[..., Any], reduction: Any, *points: Array) -> Any:
     """Return the values of a function at points, whose leading axes are free, as NumPy arrays in 64 bits."""
     leading = np.broadcast_shapes(*(point.shape[:-1] for point in points))
-    count = int(np.prod(leading))
-    flat = [np.broadcast_to(p, (*leading, p.shape[-1])).reshape(count, p.shape[-1]) for p in points]
-    blocks = max(1, -(-count // _BLOCK))
-    whole = [np.concatenate([p, np.zeros((blocks * _BLOCK - count, p.shape[1]))]) for p in flat]
+    flat = [np.broadcast_to(p, (*leading, p.shape[-1])).reshape(math.prod(leading), p.shape[-1]) for p in points]
     run = _compile(function, reduction)
     with double_precision():
-        parts = zip(*(np.split(p, blocks) for p in whole), strict=True)
-        values = [jax.tree.map(np.asarray, run(*part)) for part in parts]
-    return jax.tree.map(lambda *x: np.concatenate(x)[:count].reshape((*leading, *x[0].shape[1:])), *values)
+        columns = call_in_blocks(lambda *rows: jax.tree.leaves(run(*rows)), _BLOCK, *flat)
+    values = [column.reshape(*leading, *column.shape[1:]) for column in columns]
+    return values if len(values) > 1 else values[0]
 
 
 @functools.cache
