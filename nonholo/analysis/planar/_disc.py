@@ -9,7 +9,9 @@ $$ \tfrac h2 (P_{13}, P_{23}, P_{12}) = (z^T Q_1 z, z^T Q_2 z, z^T Q_3 z), \qqua
 The symmetric matrices S with $\mathrm{tr}\,S = \mathrm{tr}\,Q_iS = 0$ form a pencil $\langle S_1, S_2\rangle$; all
 geometry of the surface is in it. Matrices here are sizes of one: momenta are divided by the size of the body.
 
-Energy levels on the projective plane of displacements of a top, in polar coordinates.
+Energy levels on the projective plane of displacements of a top, in polar coordinates, are arcs over intervals of
+directions, the two solutions of a quadratic, joined where they meet: an arc ends in a fold, where it continues as the
+other solution, or on the equator, where its mirror image begins.
 
 With $z = \sqrt\rho\,u(\varphi)$, $b = u\cdot Bu$, $\sigma = c\cdot u^\perp$ and $\kappa = 1 - \sigma^2/D$ the level is
 $b(\rho - \kappa\rho^2) = e$, $e = h^2E/2$, on $0 \le \rho \le 1$.
@@ -20,8 +22,41 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, PlanarBody, closed_curves
+from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, PlanarBody
 from nonholo.base.types import Array, Float
+
+_SAME_MIDDLE = 1e-8  # angle below which two middles of arcs are one
+
+
+class Place(NamedTuple):
+    """An arc on one side of the equator, 1 or -1, and the sense in which it is run through."""
+
+    arc: Arc
+    side: int
+    sense: int
+
+    def following(self, arcs: list[Arc]) -> "Place":
+        """Return what continues the curve: the sense is reversed at every end."""
+        arc = self.arc
+        if not arc.ends:
+            return self
+        end, direction = (arc.ends[1], arc.stop) if self.sense > 0 else (arc.ends[0], arc.start)
+        if end == EQUATOR:
+            return Place(arc, -self.side, -self.sense)
+        others = [a for a in arcs if a.sign == -arc.sign and a.ends]
+        other = min(others, key=lambda a: _apart(direction, a.stop if self.sense > 0 else a.start), default=arc)
+        return Place(other, self.side, -self.sense)
+
+    def is_same(self, other: "Place") -> bool:
+        """Return whether both are the same displacements, full turns and the sense apart: one arc, or its antipode."""
+        arc, that, turn = self.arc, other.arc, 0.0 if self.side == other.side else np.pi
+        middles = (arc.start + arc.stop) / 2, (that.start + that.stop) / 2 + turn
+        return arc.sign == that.sign and (not arc.ends or _apart(*middles) < _SAME_MIDDLE)
+
+
+def _apart(x: float, y: float) -> float:
+    """Return the angle between two directions."""
+    return abs((x - y + np.pi) % (2 * np.pi) - np.pi)
 
 
 class DiscLevel(NamedTuple):
@@ -38,9 +73,27 @@ class DiscLevel(NamedTuple):
         return np.concatenate([np.empty((0, 3)), *points])
 
     def components(self, count: int) -> tuple[Float[np.ndarray, "K 3"], ...]:
-        """Return the connected curves, lifted to the sphere."""
+        """Return the connected curves, lifted to the sphere, one of each antipodal pair.
+
+        Arcs beyond the first half turn are copies of the others.
+        """
         arcs = [arc for sign in (-1, 1) for arc in self._arcs(sign)]
-        return closed_curves(arcs, lambda arc, directions, side: self._points(arc.sign, directions, side), count)
+        curves, past = [], []
+        for arc in arcs:
+            place, pieces = Place(arc, 1, 1), []
+            while not any(place.is_same(other) for other in past):
+                pieces.append(place)
+                past.append(place)
+                place = place.following(arcs)
+            if pieces:
+                curves.append(self._chain(pieces, count))
+        return tuple(curves)
+
+    def _chain(self, pieces: list[Place], count: int) -> Float[np.ndarray, "K 3"]:
+        runs = [self._points(arc.sign, arc.directions(count), side)[::sense] for arc, side, sense in pieces]
+        curve = np.concatenate([runs[0], *(run[1:] for run in runs[1:])])
+        curve[-1] = curve[0]  # equal but for the square root of rounding
+        return curve
 
     def _arcs(self, sign: int) -> list[Arc]:
         breaks = [(angle, FOLD) for angle in self._folds()]
