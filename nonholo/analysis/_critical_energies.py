@@ -8,7 +8,7 @@ with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy 
 the circle of axes. For n > 3 it has a lower bound. Theory: docs/theory/critical-energies.md.
 """
 
-from collections.abc import Callable
+import functools
 from typing import Any
 
 import numpy as np
@@ -246,14 +246,9 @@ def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float
     low = np.flatnonzero((samples <= np.roll(samples, 1)) & (samples <= np.roll(samples, -1)))
     ends = np.stack([np.roll(angles, 1)[low], np.roll(angles, -1)[low]], axis=1)
     ends[ends[:, 0] > ends[:, 1], 0] -= 2 * np.pi
-    return min([float(samples.min()), *(_least_between(least, pair) for pair in ends)])
-
-
-def _least_between(least: Callable, ends: Float[np.ndarray, "2"]) -> float:
-    """Return the least value between two angles."""
-    minimize: Any = scipy.optimize.minimize_scalar
-    minimum = minimize(lambda a: least(np.array([a]))[0], bounds=ends, method="bounded", options={"xatol": 1e-12})
-    return float(minimum.fun)
+    search: Any = functools.partial(scipy.optimize.minimize_scalar, method="bounded", options={"xatol": 1e-12})
+    minima = [search(lambda a: least(np.array([a]))[0], bounds=pair) for pair in ends]
+    return min([float(samples.min()), *(float(minimum.fun) for minimum in minima)])
 
 
 def _angles(B: np.ndarray, c: np.ndarray, root: np.ndarray) -> Float[np.ndarray, "K"]:

@@ -314,8 +314,9 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
     steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
-    if not orbit.is_discrete:
-        _check_spread(steps)
+    if not orbit.is_discrete and not ((conditions := np.linalg.cond(steps)) <= 1 / _HIDDEN).all():
+        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
+        raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
     for step in steps:
         frame, triangle = np.linalg.qr(step @ frame)
@@ -337,11 +338,3 @@ def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
     units = np.append(system.displacement_units, momenta)[-maps.shape[-1] :]
     units = alike_in_time(maps, units, len(units) - len(momenta), np.ptp(orbit.time))
     return maps * (units / units[:, None])
-
-
-def _check_spread(steps: Float[np.ndarray, "L d d"]) -> None:
-    """Refuse tangent maps of a flow that show a direction to few digits."""
-    conditions = np.linalg.cond(steps)
-    if not (conditions <= 1 / _HIDDEN).all():
-        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
-        raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")

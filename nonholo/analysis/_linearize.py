@@ -110,8 +110,7 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
     change, count, sizes = local.change[:, independent], len(local.times), _sizes(local)
     ratios = sizes / sizes[:, None]
-    depends = _depends(slope * ratios[independent][:, independent])
-    matters = _influences(depends, int((independent < local.places).sum()))
+    matters = _influences(slope * ratios[independent][:, independent], int((independent < local.places).sum()))
     states = independent[matters]
     matrix, defects, units = slope[:count, matters][:, :, matters], change[:count, matters], sizes[states]
     rates, largest = matrix * ratios[states][:, states], np.abs(local.slope[0] * ratios).max()
@@ -141,14 +140,13 @@ def _sizes(local: Local) -> Float[np.ndarray, "m"]:
     return sizes
 
 
-def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
-    """Return which change depends on which state, at any state where the derivatives are finite."""
-    finite = slope[np.isfinite(slope).all(axis=(1, 2))]
-    return np.any(np.abs(finite) > _UNSEEN * np.abs(finite).max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
+def _influences(slope: Float[np.ndarray, "K d d"], places: int) -> Bool[np.ndarray, "d"]:
+    """Return which states the velocities depend on, directly or by other states; velocities are among them.
 
-
-def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarray, "d"]:
-    """Return which states the velocities depend on, directly or by other states; velocities are among them."""
+    A change depends on a state if it does so anywhere where the derivatives are finite.
+    """
+    finite = np.abs(slope[np.isfinite(slope).all(axis=(1, 2))])
+    depends = np.any(finite > _UNSEEN * finite.max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
     matters = np.arange(len(depends)) >= places
     while np.any(more := depends[matters].any(axis=0) & ~matters):
         matters |= more

@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -79,10 +78,9 @@ class Problem:
 
     def beginning(self, share: float) -> "Problem":
         """Return the problem of the first part of the record."""
-        kinds = {}
-        for kind, rows in self.kinds.items():
-            kinds[kind] = rows.copy()
-            kinds[kind][:, math.ceil(share * rows.shape[1]) :] = np.nan
+        count = next(iter(self.kinds.values())).shape[1]
+        is_early = np.arange(count)[:, None] < share * count
+        kinds = {kind: np.where(is_early, rows, np.nan) for kind, rows in self.kinds.items()}
         return dataclasses.replace(self, kinds=kinds, last=None)
 
     @functools.cached_property

@@ -219,7 +219,9 @@ class CoordinateModel(AbstractFunctionModel):
         }
         ends = _measurements.ends_of(series)
         if heading and "position" in series and heading not in series:
-            series[heading] = np.array(ends), _course(ends, *series["position"])
+            x, y = _measurements.chords_of(ends, *series["position"]).T
+            early, late = np.unwrap(np.arctan2(y, x))  # in the middle of the chords
+            series[heading] = np.array(ends), np.array([[1.5 * early - 0.5 * late], [0.5 * (early + late)]])
         at = [i for kind in series for i in self.columns(kind)]
         both = np.concatenate([_measurements.at_nodes(ends, *rows) for rows in series.values()], axis=1)
         rates = (both[1] - both[0]) / ((ends[1] - ends[0]) * h)
@@ -254,13 +256,6 @@ class PoseModel(AbstractFunctionModel):
         """Return measured minus computed numbers, zero where nothing was measured."""
         velocity = jax.vmap(functools.partial(equations.inverse_legendre, system.plain))
         return _gap(system.group, kind, values, states, lambda: velocity(states.configuration, states.momentum))
-
-
-def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return headings at two nodes of what moves forward, from the chords after them."""
-    x, y = _measurements.chords_of(ends, nodes, rows).T
-    first, later = np.unwrap(np.arctan2(y, x))
-    return np.array([[1.5 * first - 0.5 * later], [0.5 * (first + later)]])
 
 
 def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:

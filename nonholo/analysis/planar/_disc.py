@@ -97,7 +97,7 @@ class DiscLevel(NamedTuple):
 
     def _arcs(self, sign: int) -> list[Arc]:
         breaks = [(angle, FOLD) for angle in self._folds()]
-        breaks += [(angle, EQUATOR) for angle in self._crossings() if self._reaches(angle) == sign]
+        breaks += [(angle, EQUATOR) for angle in self._crossings(sign)]
         if not breaks:
             whole = all(self._valid(sign, angle) for angle in (0.0, 1.0, 2.0, 3.0))
             return [Arc(sign, 0.0, 2 * np.pi)] if whole else []
@@ -132,10 +132,6 @@ class DiscLevel(NamedTuple):
         _, b, kappa = self._shape(np.array(angle))
         return bool(b >= 4 * kappa * self.e and self._size(sign, np.array([angle]))[0] <= 1)
 
-    def _reaches(self, angle: float) -> int:
-        """Return which solution is 1 in a direction where one of them is."""
-        return 1 if self._shape(np.array(angle))[2] >= 0.5 else -1
-
     def _folds(self) -> list[float]:
         """Return the directions, modulo pi, where b = 4 kappa e: the zeros of a quadratic form."""
         n = self._normal
@@ -147,14 +143,15 @@ class DiscLevel(NamedTuple):
         zeros = (vectors @ [np.cos(half), side * np.sin(half)] for side in (1, -1))
         return [float(np.arctan2(v[1], v[0]) % np.pi) for v in zeros]
 
-    def _crossings(self) -> list[float]:
-        r"""Return the directions, modulo pi, where $b\sigma^2 = De$: a quartic in the tangent."""
+    def _crossings(self, sign: int) -> list[float]:
+        r"""Return the directions, modulo pi, where one solution is 1, $b\sigma^2 = De$, a quartic in the tangent."""
         (b11, b12), (_, b22) = self.B
         n1, n2 = self._normal
         product = np.convolve([b22, 2 * b12, b11], [n2 * n2, 2 * n1 * n2, n1 * n1])
         quartic = product - np.linalg.det(self.B) * self.e * np.array([1.0, 0.0, 2.0, 0.0, 1.0])
         roots = np.roots(quartic)
-        return [float(np.arctan(t.real) % np.pi) for t in roots if abs(t.imag) <= 1e-9 * (1 + abs(t))]
+        angles = [float(np.arctan(t.real) % np.pi) for t in roots if abs(t.imag) <= 1e-9 * (1 + abs(t))]
+        return [angle for angle in angles if (self._shape(np.array(angle))[2] >= 0.5) == (sign > 0)]
 
 
 _FLAT = 1e-10  # singular value of the four forms below which they are dependent
@@ -194,7 +191,8 @@ class SteinerSurface(NamedTuple):
             return four @ np.linalg.svd(_four(self.forms))[0][:, -1]
         X = _matrix(four @ np.linalg.pinv(_four(self.forms)).T)
         first, second = self.pencil
-        free = self._without_squares()
+        squares = [_bilinear(first, first) / 2, _bilinear(first, second), _bilinear(second, second) / 2]
+        free = np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
         columns = [_bilinear(X, X) / 2, _bilinear(X, first), _bilinear(X, second)]
         return np.linalg.det(np.stack([_vector(column) @ free.T for column in columns], axis=-1))
 
@@ -225,11 +223,6 @@ class SteinerSurface(NamedTuple):
     def _pairs(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return the vectors u and v of the singular matrices of the pencil."""
         return [(vectors[:, 2], vectors[:, 0]) for _, vectors in map(np.linalg.eigh, _singular(self.pencil))]
-
-    def _without_squares(self) -> Float[np.ndarray, "3 6"]:
-        first, second = self.pencil
-        squares = [_bilinear(first, first) / 2, _bilinear(first, second), _bilinear(second, second) / 2]
-        return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
 
 
 def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
