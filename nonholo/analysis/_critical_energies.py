@@ -16,11 +16,11 @@ import scipy  # its parts load on first use
 
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.planar import check_conserves_energy
-from nonholo.base.checks import error, instance
+from nonholo.base.checks import error
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.results import result
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization, refuse_composition
+from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.branching import Landscape, landscape
 from nonholo.systems import NormalForm
 
@@ -147,14 +147,11 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 
 
 def _top_form(where: str, discrete: Any) -> NormalForm:
-    remedy = "Pass `discretize(SuslovTop(J), time_step)`."
-    instance(where, discrete, Discretization, "be a discretized Suslov top", remedy)
-    form = discrete.system.normal_form
+    form, remedy = as_discretization(where, discrete).system.normal_form, "Pass `discretize(SuslovTop(J), time_step)`."
     if form is None or form.is_sleigh:
         if form is not None and form.is_planar:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
         raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
-    refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
     check_conserves_energy(where, discrete, "conserve the energy")
     return form
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from nonholo.analysis._linearize import SteadyMotion, steady_motion
 from nonholo.analysis.planar import check_conserves_energy, planar_variety, restricted_momenta
-from nonholo.base.checks import array, error, instance, positive, refuse_given, shape_of, shown, trailing
+from nonholo.base.checks import array, error, positive, refuse_given, shape_of, shown, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float, Inexact
-from nonholo.discrete import Discretization, momentum_slope, weights
+from nonholo.discrete import Discretization, as_discretization, momentum_slope, weights
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, Equilibria, NormalForm, refuse_fixed_in_space, refuse_forces
 
@@ -311,7 +311,7 @@ class InvariantMeasure:
             displacement: W on the displacement variety, leading axes free. At a fold the value is infinite.
 
         Raises:
-            ValueError: A flow, a wrong shape, a value that is not finite.
+            ValueError: A flow, a composition, a wrong shape, a value that is not finite.
 
         Example:
             >>> measure = invariant_measure(nh.discretize(nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5))
@@ -319,7 +319,7 @@ class InvariantMeasure:
             0.818181818182
         """
         where = "InvariantMeasure.jacobian(displacement=...)"
-        discrete = self._discrete(where)
+        discrete = as_discretization(where, self.motion)
         shape = discrete.system.group.identity.shape
         leading = (None,) * (len(shape_of(displacement)) - 2)
         W = array(where, displacement, leading + shape, "Pass `orbit.displacement`.")
@@ -329,10 +329,10 @@ class InvariantMeasure:
         r"""Return $\log|\det \partial r_k/\partial r_0|$ along an orbit of the map, the sum over its steps.
 
         Raises:
-            ValueError: A flow, an orbit of another motion, an orbit with states left out.
+            ValueError: A flow, a composition, an orbit of another motion, an orbit with states left out.
         """
         where = "InvariantMeasure.log_volume(orbit=...)"
-        discrete = self._discrete(where)
+        discrete = as_discretization(where, self.motion)
         if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
             remedy = "Pass an orbit of the same discretization to the measure of `orbit.motion`."
             raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
@@ -341,10 +341,6 @@ class InvariantMeasure:
             raise error(where, "hold every step", got, "Run it with save_every=1.")
         steps = np.log(np.abs(step_determinants(discrete, orbit.displacement[:-1])))
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
-
-    def _discrete(self, where: str) -> Discretization:
-        remedy = "Pass the result of `discretize`."
-        return instance(where, self.motion, Discretization, "belong to a discrete map", remedy)
 
 
 def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:
