@@ -67,13 +67,11 @@ class Problem:
     def slope(self, point: np.ndarray) -> np.ndarray:
         """Return their derivatives: a trial depends on its own start alone."""
         by_kind, parts, (T, width) = self.at(point), [], self.shape
+        is_own = np.eye(T, dtype=bool)[:, None, None, :, None]
         for kind, there in self.there.items():
             _, by_numbers, by_starts = by_kind[kind]
-            whole = np.zeros((*there.shape, self.count + T * width))
-            whole[..., : self.count] = by_numbers
-            for i in range(T):
-                whole[i, ..., self.count + i * width : self.count + (i + 1) * width] = by_starts[i]
-            parts.append(whole[there])
+            own = np.where(is_own, by_starts[..., None, :], 0.0).reshape(*there.shape, T * width)
+            parts.append(np.concatenate([by_numbers, own], axis=-1)[there])
         return np.concatenate(parts)
 
     def beginning(self, share: float) -> "Problem":

@@ -18,7 +18,7 @@ from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import Limits, Way
 from nonholo.analysis.steering._shooting import driven_side_by_side, goal_gap, goal_units, sizes
 from nonholo.analysis.steering._steer import driven
-from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
+from nonholo.analysis.steering._transcription import Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
@@ -242,8 +242,8 @@ def _of_position(system: Any, numbers: Float[np.ndarray, "n"]) -> Float[np.ndarr
 
 def coordinate_problem(
     discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way, extent: Extent
-) -> Problem:
-    """Return the problem of a system in coordinates or on a group, from place and velocity at the start and a goal."""
+) -> tuple[Any, ...]:
+    """Return the problem for `transcribe` of a system by functions, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
     steps, size = len(limits[0]) // n, system.shapes[0][0]
     last = goal.end(system, x, steps * discrete.time_step)
@@ -269,7 +269,7 @@ def coordinate_problem(
         by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
         return _coordinate_gap(program, goal, way, extent, by(discrete, (v, q), forces))
 
-    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+    return program, bounds_of(program, limits, pins), first_guess, gap_of
 
 
 def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarray) -> CoordinateNodes:
@@ -325,8 +325,8 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
     return np.concatenate([v, impulses, forces, after, momenta], axis=1).ravel()
 
 
-def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> Problem:
-    """Return the problem of one member, from velocity and pose of the start, pose and velocity of the goal."""
+def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> tuple[Any, ...]:
+    """Return the problem for `transcribe` of one member, from velocity and pose of the start, then those of the goal."""
     (w, g, to_pose, to_velocity), system = ends, discrete.system
     free = dataclasses.replace(discrete, system=system.inside)
     steps, n = len(limits[0]) // system.rank, system.group.size
@@ -351,7 +351,7 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
         covectors = forces @ np.linalg.pinv(system.constraint_subspace).T
         return _group_gap(discrete, ends, way, driven_side_by_side(discrete, covectors[None], (w[None], g[None])))
 
-    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+    return program, bounds_of(program, limits, pins), first_guess, gap_of
 
 
 def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: Rollout) -> float:

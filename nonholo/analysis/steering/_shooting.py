@@ -24,21 +24,9 @@ from nonholo.simulation.traced import rollout
 from nonholo.systems import direction_lengths
 
 
-def goal_gaps(
-    discrete: Discretization, forces: Float[np.ndarray, "m steps k"], ends: Ends, block: int
-) -> tuple[Float[np.ndarray, "m c"], Float[np.ndarray, "m c n"]]:
-    """Return what goals are missed by, and its derivatives by the forces along the constraint, n = steps k.
-
-    Members go in blocks of one size, for which alone the derivatives are compiled.
-    """
-    blocks = np.arange(-(-len(forces) // block) * block).reshape(-1, block) % len(forces)
-    parts = [in_double(_gaps, discrete, *jax.tree.map(lambda x, at=at: x[at], (forces, ends))) for at in blocks]
-    values, slopes = (np.concatenate(part)[: len(forces)] for part in zip(*parts, strict=True))
-    return values, slopes.reshape(*values.shape, -1)
-
-
 @equinox.filter_jit
 def _gaps(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, Array]:
+    """Return what goals are missed by, (m, c), and its derivatives by the forces along the constraint."""
     system = discrete.system
     covectors = np.linalg.pinv(system.constraint_subspace).T
 
@@ -264,9 +252,11 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
 
     def gaps(members: np.ndarray, unit: Any, f: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
-        their_ends = jax.tree.map(lambda x: x[members[at]], ends)
-        c, J = goal_gaps(discrete, (f * unit).reshape(len(f), steps, -1), their_ends, block)
-        return c / units, J * unit / units[:, None]
+        forces, who = (f * unit).reshape(len(f), steps, -1), members[at]
+        blocks = np.arange(-(-len(f) // block) * block).reshape(-1, block) % len(f)  # of one size: compiled once
+        parts = [in_double(_gaps, discrete, forces[i], jax.tree.map(lambda x, i=i: x[who[i]], ends)) for i in blocks]
+        c, J = (np.concatenate(part)[: len(f)] for part in zip(*parts, strict=True))
+        return c / units, J.reshape(*c.shape, -1) * unit / units[:, None]
 
     size, unit = sizes(discrete, steps, ends), np.tile(np.exp2(np.round(np.log2(lengths))), steps)
     forces, misses, is_least = best(functools.partial(gaps, everyone, 1.0), size, limits)

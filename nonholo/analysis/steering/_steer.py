@@ -229,7 +229,7 @@ def _by_ipopt(
     results = []
     for member in range(len(ends[0])):
         one = tuple(each if each is None else each[member] for each in ends)
-        results.append(transcribe(group_problem(discrete, one, limits, way)))
+        results.append(transcribe(*group_problem(discrete, one, limits, way)))
         report(member + 1, len(ends[0]))
     return tuple(np.array(part) for part in zip(*results, strict=True))
 
@@ -253,6 +253,6 @@ def _steered_in_coordinates(
     names = _arguments.coordinate_numbers(discrete.system, extent.sizes, extent.duration)
     way = way._replace(bounds=StateBounds.of(bounds[1], names, both))
     problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, extent)
-    forces, gap, outcome = interruptibly(lambda: transcribe(problem))
+    forces, gap, outcome = interruptibly(lambda: transcribe(*problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     return Steering(discrete, (v, q), forces, *map(np.asarray, (effort, gap, outcome)))

@@ -107,14 +107,13 @@ class Program:
         return values.shape[1], len(end)
 
     @functools.cached_property
-    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+    def limits(self) -> tuple[np.ndarray, ...]:
         """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
         (count, ends), bounds = self.shape, self.steps.bounds
         clear = np.zeros(len(self.steps.radii) * self.steps.nodes.outline.shape[0])
         zeros = np.zeros(count - len(clear) - len(bounds.low))
         steps = np.concatenate([zeros, clear, bounds.low]), np.concatenate([zeros, clear + np.inf, bounds.high])
-        least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
-        return least, most
+        return tuple(np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
 
     @property
     def unknowns(self) -> int:
@@ -252,30 +251,23 @@ _OPTIONS = {
 }
 
 
-class Problem(NamedTuple):
-    """A program and what it belongs to.
+def transcribe(
+    program: Program, bounds: Limits, guess: Callable[..., np.ndarray], gap_of: Callable[[np.ndarray], float]
+) -> tuple[Float[np.ndarray, "steps k"], float, str]:
+    """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`.
 
-    Attributes:
+    Args:
         program: Equations of all steps, and the cost.
         bounds: The least and the largest value of each unknown.
         guess: From random numbers and a spread to unknowns.
         gap_of: By what the orbit under forces, (steps, k), misses goal, obstacles and places.
     """
-
-    program: Program
-    bounds: tuple[np.ndarray, np.ndarray]
-    guess: Callable[[np.random.Generator, float], np.ndarray]
-    gap_of: Callable[[np.ndarray], float]
-
-
-def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, str]:
-    """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
     rng, searches = np.random.default_rng(0), []
-    units = problem.program.units(problem.guess(np.random.default_rng(0), 1.0))
+    units = program.units(guess(np.random.default_rng(0), 1.0))
     for spread in _SPREADS:
-        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds, units)
-        forces = problem.program.split(unknowns)[1]
-        gap = problem.gap_of(forces)
+        unknowns, status = minimize(program, guess(rng, spread), bounds, units)
+        forces = program.split(unknowns)[1]
+        gap = gap_of(forces)
         searches.append((gap, forces, outcome_of(status, gap)))
         if searches[-1][2] == "converged":
             break
