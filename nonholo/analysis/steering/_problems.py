@@ -326,7 +326,7 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
 
 
 def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> tuple[Any, ...]:
-    """Return the problem for `transcribe` of one member, from velocity and pose of the start, then those of the goal."""
+    """Return the problem for `transcribe` of one member, from velocity and pose at the start and those of the goal."""
     (w, g, to_pose, to_velocity), system = ends, discrete.system
     free = dataclasses.replace(discrete, system=system.inside)
     steps, n = len(limits[0]) // system.rank, system.group.size
