@@ -28,9 +28,6 @@ _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may h
 _OTHERS, _SPREAD = 3, 0.3
 _RTOL, _ATOL = 1e-11, 1e-12  # of the equations of variation
 
-Move = Callable[[Array, Array, Array], tuple[Array, Array]]
-"""Takes time, pose and momentum to velocity and rate; of a map to the next pose and the change of momentum."""
-
 
 def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
     """Return the changes beside a state of a system on a group, or of its map, and what gives states beside it."""
@@ -113,7 +110,8 @@ def _refuse(where: str, system: Any) -> None:
         raise error(where, "have forces that do not depend on time", got, remedy)
 
 
-def _flowing(system: Any) -> Move:
+def _flowing(system: Any) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+    """Return the function that takes time, pose and momentum to velocity and rate."""
     field, group, k = vector_field(system), system.group, system.rank
 
     def move(time: Array, g: Array, r: Array) -> tuple[Array, Array]:
@@ -123,7 +121,9 @@ def _flowing(system: Any) -> Move:
     return move
 
 
-def _stepping(discrete: Discretization) -> Move:
+def _stepping(discrete: Discretization) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+    """Return the function that takes time, pose and momentum to the next pose and the change of momentum."""
+
     def move(_: Array, g: Array, r: Array) -> tuple[Array, Array]:
         pair = simulate(discrete, momentum=r, configuration=g, steps=1, throw=False)
         return pair.configuration[-1], pair.restricted_momentum[-1] - r

@@ -12,7 +12,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -91,9 +91,6 @@ class Reduced:
         return jnp.asarray(self.system.lagrangian(s, *jnp.split(u, [self.group.dim])), float)
 
 
-Reduction: TypeAlias = Planar | Reduced
-
-
 def call(function: Callable[..., Any], reduction: Any, *points: Array) -> Any:
     """Return the values of a function at points, whose leading axes are free, as NumPy arrays in 64 bits."""
     leading = np.broadcast_shapes(*(point.shape[:-1] for point in points))
@@ -119,18 +116,18 @@ def _velocities(r: Planar, pose: Array, u: Array) -> Array:
     return _coordinates(r, jnp.stack([cos * u[1] - sin * u[2], sin * u[1] + cos * u[2], u[0]]), u[3:])
 
 
-def momenta(r: Reduction, s: Array, u: Array) -> Array:
+def momenta(r: Planar | Reduced, s: Array, u: Array) -> Array:
     """Return the derivative of the Lagrangian by u."""
     return jax.grad(r.lagrangian, 2)(_HERE, s, u)
 
 
-def constraint_terms(r: Reduction, s: Array) -> tuple[Array, Array]:
+def constraint_terms(r: Planar | Reduced, s: Array) -> tuple[Array, Array]:
     """Return W and its derivatives by the shape, whose axis is the last."""
     at_identity = functools.partial(r.rows, _HERE)
     return at_identity(s), jax.jacfwd(at_identity)(s)
 
 
-def inertia_terms(r: Reduction, s: Array) -> tuple[Array, Array]:
+def inertia_terms(r: Planar | Reduced, s: Array) -> tuple[Array, Array]:
     """Return the inertia M of a quadratic Lagrangian and its derivatives by the shape."""
 
     def inertia(s: Array) -> Array:  # momenta are linear
