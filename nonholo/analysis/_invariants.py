@@ -14,19 +14,9 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
-from nonholo.systems import (
-    AbstractSystem,
-    NormalForm,
-    alike_in_time,
-    direction_lengths,
-    gyroscopic_form,
-    null_space,
-    refuse_forces,
-    row_space,
-)
+from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
-_HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
 _MOST_ENTRIES = 1_000_000  # of displacements of arrowheads, whose logarithms are taken
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
@@ -284,57 +274,3 @@ def _vanishing(conditions: Float[np.ndarray, "c m"], scale: float) -> Float[np.n
 def _span(rows: Float[np.ndarray, "n dim"]) -> Float[np.ndarray, "n dim"]:
     """Return orthonormal rows that span what independent ones do, whose sizes may differ by any factor."""
     return row_space(rows / np.linalg.norm(rows, axis=1, keepdims=True), 0.0)
-
-
-def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
-    r"""Return the finite-time Lyapunov exponents along an orbit, largest first.
-
-    $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
-       \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
-
-    Benettin's method: a frame, orthonormal in the body's units, is carried by the tangent map (`Orbit.tangent`) and
-    made orthonormal again at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where
-    nothing else decides them, in coordinates of configurations with admissible velocities. An exponent of a map is
-    minus infinity where a step takes a direction away.
-
-    Args:
-        orbit: One that has a `tangent`.
-
-    Raises:
-        ValueError: An orbit without a tangent map, or of a single state; a flow with times so far apart that rounding
-            hides a direction that decays.
-
-    Example:
-        A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
-
-        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
-        >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
-        array([ 0. , -0.4])
-    """
-    steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
-    if not len(steps):
-        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
-    if not orbit.is_discrete and not ((conditions := np.linalg.cond(steps)) <= 1 / _HIDDEN).all():
-        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
-        raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")
-    frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
-    for step in steps:
-        frame, triangle = np.linalg.qr(step @ frame)
-        with np.errstate(divide="ignore"):
-            growth += np.log(np.abs(triangle.diagonal()))
-    return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
-
-
-def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
-    """Return the derivatives of states in units of the body and of a time."""
-    if not isinstance(orbit, Orbit):
-        from nonholo.lagrange_dalembert import tangents
-
-        maps, rows, units, places = tangents.changes(orbit)
-        return tangents.among_admissible(maps, rows, alike_in_time(maps, units, places, np.ptp(orbit.time)))
-    system, maps = orbit.system, orbit.tangent
-    lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
-    momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2)
-    units = np.append(system.displacement_units, momenta)[-maps.shape[-1] :]
-    units = alike_in_time(maps, units, len(units) - len(momenta), np.ptp(orbit.time))
-    return maps * (units / units[:, None])

@@ -13,16 +13,8 @@ from nonholo.base.checks import array, count, error, function, instance, needs, 
 from nonholo.base.memo import Keeper
 from nonholo.base.results import result
 from nonholo.base.types import Bool, Float, Inexact, Int
-from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import (
-    AbstractCoordinateDiscretization,
-    AbstractCoordinateSystem,
-    AbstractSystem,
-    extent_of,
-    refuse_slip,
-)
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, extent_of
 
 _CHOICES = 1000  # of velocities
 _SHARE = 0.05  # least singular value of the dependent columns of constraints, orthonormal in units of equal energy
@@ -265,14 +257,15 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
 def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
     """Return the changes beside a state, and what takes changes of places and velocities to a state beside it."""
     if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
-        return _motions(owner).beside_state(owner, system, configuration, velocity)
+        return door(owner).beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."
         raise error(f"{owner}(system=...)", "be a system or its map", shown(system), remedy)
-    return _motions(owner).on_group(owner, system, configuration, velocity)
+    return door(owner).on_group(owner, system, configuration, velocity)
 
 
-def _motions(owner: str) -> Any:
+def door(owner: str) -> Any:
+    """Return the motions beside a state, for a caller whom an error names where there is no JAX."""
     with needs("jax", owner):
         from nonholo.analysis import _beside
     return _beside
@@ -499,60 +492,3 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
     tight = _TIGHT * np.abs(ends).max()
     root: Any = brentq(change, *ends, xtol=tight) if crosses else bisect(is_alike, *ends, xtol=tight)
     return float(root)
-
-
-_WHERE = "Orbit.tangent"
-
-
-def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
-    r"""Return the derivative of each state of an orbit by the one before, $\partial r_{k+1}/\partial r_k$.
-
-    Of the discrete map, without JAX from closed derivatives along the displacement variety,
-
-    $$ \frac{\partial r_{k+1}}{\partial r_k} = F'(W_k^{-1})\,F'(W_k)^{-1}, \qquad
-       F(W) = P(W)|_{\mathfrak d},\quad r_{k+1} = -F(W_k^{-1}), $$
-
-    for a left-invariant system, difference "matrix", constraint "skew" and order 2; of other maps by JAX. Where forces
-    depend on the pose, or the constraint is fixed in space, a state is $(\xi, r)$ with $\xi$ of the pose
-    $g\,e^\xi$, (K - 1, dim + k, dim + k). Of a flow without forces, of a constraint fixed in the body, from the Taylor
-    series of its equation of variation, between its times; of other flows by Runge-Kutta steps of that equation.
-
-    Args:
-        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
-
-    Raises:
-        ValueError: Another kind of orbit, a map under a table or a force that is a function.
-
-    Example:
-        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
-        >>> orbit = nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=1)
-        >>> orbit.tangent[0].round(3)
-        array([[0.961, 0.   ],
-               [0.   , 1.   ]])
-    """
-    as_orbit(_WHERE, orbit, "of one in coordinates take `orbit.tangent`.")
-    discrete, system = orbit.motion, orbit.system
-    refuse_slip(_WHERE, system)
-    if orbit.has_impacts.any():
-        raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
-    if isinstance(discrete, ContinuousFlow):
-        if system.is_spatial or system.is_forced:
-            return _motions(_WHERE).along_flow(orbit)
-        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
-    if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
-        remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
-    if not orbit.has_every_step:
-        raise error(_WHERE, "have all states of the run", f"{len(orbit)} of them", "Run with save_every=1.")
-    if _has_closed_derivatives(discrete):
-        return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
-    return _motions(_WHERE).along(orbit)
-
-
-def _has_closed_derivatives(discrete: Discretization) -> bool:
-    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
-
-
-def _acts_from_outside(forces: Any) -> bool:
-    """Return whether forces do more than the state does: by a table, or by a function of the time."""
-    return forces is not None and (forces.table is not None or forces.function is not None)
