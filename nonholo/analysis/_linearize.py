@@ -335,7 +335,9 @@ def _steady_state(subject: Any, flow: Any, state: tuple[Any, Any]) -> tuple[Any,
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", subject, *state)
         equations = _equations_of(flow, local)
-        change, units = _correction(local._replace(is_carried=False) if is_rest else local, equations)
+        matrix, defect = _balance(local._replace(is_carried=False) if is_rest else local, equations)
+        is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
+        change = equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect))
         state = beside(-change[: local.places], -change[local.places :])
         velocity = local.state[local.places :]
         begin = begin or (velocity, equations.units[local.places :])
@@ -361,13 +363,6 @@ def _equations_of(flow: Any, local: Local) -> Reduced:
         remedy = "Prescribed motions and forces of the time drive it: leave them out."
         raise error(_NEAR, "be near a steady motion", "equations of the time", remedy)
     return equations
-
-
-def _correction(local: Local, equations: Reduced) -> tuple[Float[np.ndarray, "m"], Float[np.ndarray, "m"]]:
-    """Return a correction of all numbers of a state, and their units."""
-    matrix, defect = _balance(local, equations)
-    is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
-    return equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect)), units
 
 
 def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:

@@ -121,8 +121,6 @@ class CoordinateNodes(NamedTuple):
         """Return by how much the last pose is missed, and the last momentum along the constraint."""
         (place, p), departure = self.state(x), self.system.places.departure
         off_pose = jnp.zeros(0) if self.pose is None else departure(self.pose, place[: len(self.pose)])
-        if not len(self.directions):
-            return off_pose
         rows = equations.forms(self.system, place) * self.unit
         off = (p - equations.momentum(self.system, place, self.velocity)) * self.unit
         along = self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
