@@ -294,13 +294,13 @@ def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np
 
     Each member has a separate random stream, so that no other one changes where it begins.
     """
-    everyone, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
+    streams = [np.random.default_rng(member) for member in range(len(size))]
     nothing = np.clip(np.zeros_like(size), *limits)
-    misses = gaps(nothing, everyone)[0]
+    misses = gaps(nothing, np.arange(len(size)))[0]
     is_least = (_largest(misses) < _MET) & ~nothing.any(axis=1)  # no effort at all
     ends = nothing, np.where(is_least[:, None], misses, np.inf), is_least
-    left = everyone[~is_least]
     for spread in SPREAD:
+        left = np.flatnonzero(~ends[2])
         if not len(left):
             break
         first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
@@ -309,5 +309,4 @@ def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np
         better = least | (gap < _largest(ends[1][left]))
         for whole, part in zip(ends, (near, misses, least), strict=True):
             whole[left[better]] = part[better]
-        left = np.flatnonzero(~ends[2])
     return ends
