@@ -202,23 +202,8 @@ def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.
     return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
 
 
-class Extent(NamedTuple):
-    """The size of a motion in coordinates.
-
-    Attributes:
-        unit: Units of velocities in which each has the same kinetic energy.
-        far: The way in these.
-        duration: The time that it takes.
-    """
-
-    unit: Float[np.ndarray, "n"]
-    far: float
-    duration: float
-
-    @property
-    def sizes(self) -> Float[np.ndarray, "n"]:
-        """The way in each coordinate, or direction of a group."""
-        return self.far * self.unit
+Extent = tuple[Float[np.ndarray, "n"], float]
+"""Units of velocities in which each has the same kinetic energy, and the way in these."""
 
 
 def extent_of_way(discrete: Any, start: tuple[np.ndarray, np.ndarray], goal: Goal, way: Way, steps: int) -> Extent:
@@ -229,7 +214,7 @@ def extent_of_way(discrete: Any, start: tuple[np.ndarray, np.ndarray], goal: Goa
     ways = [system.places.departure(q, last) / unit, duration * v / unit]
     at = _arguments.numbers_of_position(system)
     ways += [(place - q.ravel()[at]) / _of_position(system, unit) for place in way.via.values()]
-    return Extent(unit, float(max(np.abs(each).max() for each in ways)) or 1.0, duration)
+    return unit, float(max(np.abs(each).max() for each in ways)) or 1.0
 
 
 def _of_position(system: Any, numbers: Float[np.ndarray, "n"]) -> Float[np.ndarray, "_"]:
@@ -242,10 +227,11 @@ def coordinate_problem(
     discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way, extent: Extent
 ) -> tuple[Any, ...]:
     """Return the problem for `transcribe` of a system by functions, from place and velocity at the start and a goal."""
-    ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
+    ((x, v), goal), (unit, far), system, n = ends, extent, discrete.system, discrete.system.dimension
     steps, size = len(limits[0]) // n, system.shapes[0][0]
-    last = goal.end(system, x, steps * discrete.time_step)
-    nodes = _nodes(discrete, way, last, goal, extent.unit)
+    sizes, duration = far * unit, steps * float(discrete.time_step)
+    last = goal.end(system, x, duration)
+    nodes = _nodes(discrete, way, last, goal, unit)
     first = np.append(x, lagrange_dalembert.momentum(system, x, v))
     program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
     q, at = x[:size], _arguments.numbers_of_position(system)
@@ -254,18 +240,18 @@ def coordinate_problem(
     if way.outline.shape[-1]:
         way.check("start", _arguments.points_at(system, q, way.outline))
     path, forces = _coordinate_guess(system, (q, last[:size]), way, steps)
-    push = extent.far / extent.unit / extent.duration**2
+    push = far / unit / duration**2
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
-        bent = system.places.beside(path, spread * extent.sizes * bow * rng.normal(size=n))
+        bent = system.places.beside(path, spread * sizes * bow * rng.normal(size=n))
         noise = spread * push * rng.normal(size=(steps, n))
         return _coordinate_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
         by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
-        return _coordinate_gap(program, goal, way, extent, by(discrete, (v, q), forces))
+        return _coordinate_gap(program, goal, way, sizes, far / duration, by(discrete, (v, q), forces))
 
     return program, bounds_of(program, limits, pins), first_guess, gap_of
 
@@ -280,16 +266,17 @@ def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarr
     return CoordinateNodes(system, h, way.outline, unit, directions, goal.velocity, goal.pose)
 
 
-def _coordinate_gap(program: Program, goal: Goal, way: Way, extent: Extent, orbit: Any) -> float:
-    """Return by what an orbit misses its goal, obstacles and places, in units; infinity where it ends before."""
-    q, nodes = orbit.configuration, program.steps.nodes
+def _coordinate_gap(program: Program, goal: Goal, way: Way, sizes: np.ndarray, speed: float, orbit: Any) -> float:
+    """Return by what an orbit misses its goal, obstacles and places, in units; infinity where it ends before.
+
+    Sizes are those of the way in each coordinate, or direction of a group.
+    """
+    q, nodes, system = orbit.configuration, program.steps.nodes, program.steps.nodes.system
     if len(q) <= len(program.rows) or not np.isfinite(q[-1]).all():
         return np.inf
-    system, sizes = nodes.system, extent.sizes
     off = [abs(q[-1, i] - number) / sizes[i] for i, number in goal.coordinates.items()]
     last = np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1])
-    momenta = np.full(len(nodes.directions), extent.far / extent.duration)
-    units = np.append(sizes[: 0 if goal.pose is None else None], momenta)
+    units = np.append(sizes[: 0 if goal.pose is None else None], np.full(len(nodes.directions), speed))
     off += np.abs(in_double(nodes.goal_gap, last) / units).tolist()
     flat = q.reshape(len(q), -1)
     off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], flat[1:]], axis=1)))

@@ -249,10 +249,10 @@ def _steered_in_coordinates(
     limits = _arguments.limits_of_steps(bounds[0], steps, n)
     goal = _problems.checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, q), "goal": goal.numbers(discrete.system)}
-    extent = _problems.extent_of_way(discrete, start, goal, way, steps)
-    names = _arguments.coordinate_numbers(discrete.system, extent.sizes, extent.duration)
+    unit, far = _problems.extent_of_way(discrete, start, goal, way, steps)
+    names = _arguments.coordinate_numbers(discrete.system, far * unit, steps * float(discrete.time_step))
     way = way._replace(bounds=StateBounds.of(bounds[1], names, both))
-    problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, extent)
+    problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, (unit, far))
     forces, gap, outcome = interruptibly(lambda: transcribe(*problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     return Steering(discrete, (v, q), forces, *map(np.asarray, (effort, gap, outcome)))
