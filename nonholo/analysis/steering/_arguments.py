@@ -20,16 +20,15 @@ Limits = tuple[np.ndarray, np.ndarray]
 
 
 class Guess(NamedTuple):
-    """Where IPOPT begins: a motion with its body covectors, or a path of positions; None of what is not there."""
+    """Where IPOPT begins: a motion, configurations and body covectors, or a path of positions; None if not there."""
 
-    configuration: Float[np.ndarray, "K ..."] | None = None
-    controls: Float[np.ndarray, "steps dim"] | None = None
+    motion: tuple[Float[np.ndarray, "K ..."], Float[np.ndarray, "steps dim"]] | None = None
     path: Float[np.ndarray, "P n"] | None = None
 
     @property
     def trust(self) -> float:
         """The part of random changes that it is given."""
-        return 1.0 if self.configuration is None and self.path is None else 0.1
+        return 1.0 if self.motion is None and self.path is None else 0.1
 
 
 def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
@@ -41,7 +40,7 @@ def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
     if controls is not None:
         if controls.ndim != 2 or len(controls) != steps:
             raise error(where, f"be of one member and {steps} steps", f"controls of shape {controls.shape}", remedy)
-        return Guess(np.asarray(guess.orbit.configuration), controls)
+        return Guess((np.asarray(guess.orbit.configuration), controls))
     if n is None:
         raise error(where, "be the result of `steer` for a system without a position", shown(guess), remedy)
     path = array(where, guess, (None, n), remedy)

@@ -290,8 +290,8 @@ def _coordinate_guess(
     system: Any, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
 ) -> tuple[Float[np.ndarray, "K ..."], Float[np.ndarray, "steps n"]]:
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
-    if way.guess.configuration is not None and way.guess.controls is not None:
-        return way.guess.configuration, way.guess.controls
+    if way.guess.motion is not None:
+        return way.guess.motion
     begin, end = ends
     q = system.places.beside(begin, np.linspace(0, 1, steps + 1)[:, None] * system.places.departure(begin, end))
     if way.outline.shape[-1]:
@@ -364,8 +364,8 @@ def _group_guess(
     """
     group, (g, to_pose), guess = discrete.system.group, ends, way.guess
     rows = np.asarray(discrete.system.constraint_subspace)
-    if guess.configuration is not None:
-        return guess.configuration, guess.controls @ rows.T
+    if guess.motion is not None:
+        return guess.motion[0], guess.motion[1] @ rows.T
     last = g if to_pose is None else to_pose
     poses = g @ group.exp(np.linspace(0, 1, steps + 1)[:, None] * group.log(group.inverse(g) @ last))
     if group.is_affine:
