@@ -78,10 +78,10 @@ class GroupModel(AbstractModel):
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
         """Return the motion of a trial."""
-        return simulate(discretize(system, h), **_started(system, start, pose), steps=steps)
+        return simulate(discretize(system, h), **_first_state(system, start, pose), steps=steps)
 
 
-def _started(system: Any, start: Array, pose: Array) -> dict[str, Array]:
+def _first_state(system: Any, start: Array, pose: Array) -> dict[str, Array]:
     """Return the first velocity, and the pose that a start changes to; one along the constraint alone changes none."""
     k, dim, xp = system.rank, system.group.dim, start.__array_namespace__()
     if len(start) > k:
@@ -94,7 +94,7 @@ def _compile_on_group(_maker: Any, system_of: Callable[..., Any], shapes: Shapes
     def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
         steps = len(next(iter(kinds.values()))) - 1
-        orbit = rollout(discretize(system, time_step), **_started(system, start, g), steps=steps)
+        orbit = rollout(discretize(system, time_step), **_first_state(system, start, g), steps=steps)
 
         def velocity() -> Array:
             inertia = jnp.asarray(system.constrained_inertia)
@@ -320,7 +320,7 @@ def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
     return structure, tuple(functions), program
 
 
-def model_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> AbstractModel:
+def model_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> GroupModel | AbstractFunctionModel:
     """Return the motions of the system of a guess; refused if they do not vary its parameters alone."""
     where, system = "fit(system_of=...)", system_of(by_name(shapes, numbers))
     if not isinstance(system, AbstractCoordinateSystem):
@@ -330,5 +330,5 @@ def model_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
     if not (system.parameters and system.family == system_of(by_name(shapes, numbers)).family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error(where, "vary the parameters of one system", type(system).__name__, remedy)
-    kind = CoordinateModel if system.coordinates else PoseModel
+    kind = CoordinateModel if getattr(system, "coordinates", ()) else PoseModel
     return kind(system, maker_of(system_of, shapes, numbers))
