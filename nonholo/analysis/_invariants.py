@@ -119,7 +119,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 def _reversal_defect(orbit: Orbit) -> float | None:
     """Return the largest miss of a step forward and back; None of flows, forced motions and those not compiled."""
-    motion = orbit.motion
+    motion: Any = orbit.motion
     is_free = isinstance(motion, Discretization) and motion.forces is None
     route = motion.route.compiled_route if is_free else None
     if route is None:

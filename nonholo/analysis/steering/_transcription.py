@@ -303,7 +303,9 @@ def minimize(
     (unit, rows), (least, most) = units, program.limits
     numbers, conditions, one, nothing = map(casadi.Sparsity.dense, (program.unknowns, len(rows), 1, 0))
     patterns: Any = program.slope_places.pattern, program.curvature_places.pattern
-    slopes, curvatures = (casadi.Sparsity(*x.shape, x.indptr.tolist(), x.indices.tolist()) for x in patterns)
+    slopes, curvatures = (
+        casadi.Sparsity(x.shape[0], x.shape[1], x.indptr.tolist(), x.indices.tolist()) for x in patterns
+    )
     scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
     effort = max(program.cost(np.where(bounds[0] < bounds[1], unit, 0.0))[1] * unit) or 1.0
 
