@@ -31,8 +31,7 @@ def planar_variety(system: AbstractSystem) -> PlanarVariety | None:
 
 def blade_axes(system: AbstractSystem) -> Float[np.ndarray, "3 3"] | None:
     """Return the axes of the blade of a sleigh in the plane, at its contact point; None for other systems."""
-    variety = planar_variety(system)
-    return None if variety is None else variety.blade
+    return getattr(planar_variety(system), "blade", None)
 
 
 def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:

@@ -148,10 +148,9 @@ class Program:
 
     def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
         """Return the effort and its derivative."""
-        forces, slope, h = self.split(u)[1], np.zeros((len(self.rows), self.width)), float(self.steps.time_step)
-        start = self.steps.nodes.sizes[1]
-        slope[:, start : start + forces.shape[1]] = h * forces
-        return h * float((forces**2).sum()) / 2, slope.ravel()
+        forces, slope, h = self.split(u)[1], np.zeros(len(u)), float(self.steps.time_step)
+        self.split(slope)[1][:] = h * forces
+        return h * float((forces**2).sum()) / 2, slope
 
     def slopes(self, u: Float[np.ndarray, "n"]) -> sparse.csc_array:
         """Return the derivatives of the conditions."""
