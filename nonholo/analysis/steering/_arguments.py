@@ -31,7 +31,7 @@ class Guess(NamedTuple):
         return 1.0 if self.motion is None and self.path is None else 0.1
 
 
-def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
+def _checked_guess(guess: Any, steps: int, n: int) -> Guess:
     """Return a guess: a `Steering` of one member with as many steps, or positions of n numbers."""
     where, remedy = "steer(guess=...)", "Pass the result of `steer` for one member, or two positions or more."
     if guess is None:
@@ -41,7 +41,7 @@ def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
         if controls.ndim != 2 or len(controls) != steps:
             raise error(where, f"be of one member and {steps} steps", f"controls of shape {controls.shape}", remedy)
         return Guess((np.asarray(guess.orbit.configuration), controls))
-    if n is None:
+    if not n:
         raise error(where, "be the result of `steer` for a system without a position", shown(guess), remedy)
     path = array(where, guess, (None, n), remedy)
     if len(path) < 2:
@@ -219,9 +219,8 @@ def body_numbers(system: System, duration: float) -> dict[str, Rows]:
 
 def _pose_numbers(group: Any, rows: Float[np.ndarray, "NN x"], length: float) -> dict[str, Rows]:
     """Return rows by name from those for the entries of a pose."""
-    entries, names = rows.reshape(group.size, group.size, -1), {}
-    if group.is_affine:
-        names = {name: (entries[i, -1:], length) for i, name in zip(range(group.size - 1), "xyz", strict=False)}
+    entries, axes = rows.reshape(group.size, group.size, -1), "xyz"[: group.size - 1] if group.is_affine else ""
+    names = {name: (entries[i, -1:], length) for i, name in enumerate(axes)}
     return names | ({"theta": (entries[:1, 0] + 1j * entries[1:2, 0], 1.0)} if group == SE(2) else {})
 
 
@@ -249,18 +248,12 @@ def coordinate_numbers(system: Any, sizes: Float[np.ndarray, "n"], duration: flo
     return velocity | {name: (unit[n + i, None], sizes[i]) for i, name in enumerate(system.coordinates)}
 
 
-def size_of_positions(system: Any) -> int | None:
-    """Return how many numbers a position has; None where bodies have none."""
-    if getattr(system, "coordinates", ()):
-        return 2 if {"x", "y"} <= set(system.coordinates) else None
-    return system.group.size - 1 if system.group.is_affine else None
-
-
 def numbers_of_position(system: Any) -> list[int]:
-    """Return which numbers of a configuration are its position."""
-    if system.coordinates:
-        return list(map(system.coordinates.index, "xy")) if size_of_positions(system) else []
-    return list(range(system.group.size - 1, system.group.size**2 - 1, system.group.size))
+    """Return which numbers of a configuration are its position; none where bodies have none."""
+    if names := getattr(system, "coordinates", ()):
+        return list(map(names.index, "xy")) if {"x", "y"} <= set(names) else []
+    size = system.group.size
+    return list(range(size - 1, size**2 - 1, size)) if system.group.is_affine else []
 
 
 class Way(NamedTuple):
@@ -285,9 +278,9 @@ class Way(NamedTuple):
     @classmethod
     def of(cls, system: Any, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
         """Return checked arguments of `steer` for a system."""
-        n = size_of_positions(system)
+        n = len(numbers_of_position(system))
         hint = _checked_guess(guess, steps, n)
-        if n is None:
+        if not n:
             if not (obstacles is None and outline is None and via is None):
                 remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y are somewhere."
                 raise error("steer(discrete=...)", "have a position", "a system without", remedy)
