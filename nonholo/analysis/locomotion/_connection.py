@@ -214,8 +214,8 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     shape = tuple(i for i, name in enumerate(names) if name not in pose)
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
-    x, y, theta = (names.index(name) for name in pose)
-    return _connection(door().Planar(free, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+    reduction = door().Planar(free, tuple(map(names.index, pose)), shape)
+    return _connection(reduction, system, tuple(names[i] for i in shape))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:

@@ -215,8 +215,7 @@ class SteinerSurface(NamedTuple):
         pairs = self._pairs()
         if self.is_flat or len(pairs) < 3:
             return None
-        normals = [np.cross(u, v) for u, v in pairs[:2]]
-        common = np.cross(normals[0], normals[1])
+        common = np.cross(np.cross(*pairs[0]), np.cross(*pairs[1]))  # of their normals
         common /= np.linalg.norm(common)
         return np.linalg.inv(self.to_forms) @ ((common @ self.forms) @ common)
 
