@@ -204,10 +204,8 @@ class SteinerSurface(NamedTuple):
         """
         if self.is_flat:
             return np.empty((0, 2, 3))
-        ends = []
-        for u, v in self._pairs():
-            center, half = ((u @ self.forms) @ w for w in (u, v))
-            ends.append([center - half, center + half])
+        segments = [((u @ self.forms) @ u, (u @ self.forms) @ v) for u, v in self._pairs()]
+        ends = [[center - half, center + half] for center, half in segments]
         return np.array(ends).reshape(-1, 2, 3) @ np.linalg.inv(self.to_forms).T
 
     def triple_point(self) -> Float[np.ndarray, "3"] | None:
