@@ -52,11 +52,11 @@ class AbstractModel(abc.ABC):
         Trials run on through nodes at which nothing is measured, so that few numbers of steps are compiled. A table of
         forces, which may end with the record, has its own number.
         """
-        (run, *shared), nodes = program, next(iter(kinds.values())).shape[1]
+        (run, *settings), nodes = program, next(iter(kinds.values())).shape[1]
         room = nodes if getattr(self.system, "table", None) is not None else rows_above(nodes)
         more = (0, 0), (0, room - nodes), (0, 0)
         longer = {kind: np.pad(rows, more, constant_values=np.nan) for kind, rows in kinds.items()}
-        parts = in_double(run, *shared, numbers, starts, poses, longer)
+        parts = in_double(run, *settings, numbers, starts, poses, longer)
         return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
 
 
