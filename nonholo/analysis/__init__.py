@@ -19,8 +19,8 @@ from nonholo.analysis._equilibria import (
     invariant_measure,
     lyapunov_function,
 )
-from nonholo.analysis._invariants import ConservedMomenta, Invariants, conserved_momenta, invariants, lyapunov_exponents
-from nonholo.analysis._linearize import Linearization, SteadyMotion, critical_values, linearize, tangent
+from nonholo.analysis._invariants import ConservedMomenta, Invariants, conserved_momenta, invariants
+from nonholo.analysis._linearize import Linearization, SteadyMotion, critical_values, linearize
 from nonholo.analysis._loci import (
     Deltoid,
     HalfPlanes,
@@ -33,4 +33,5 @@ from nonholo.analysis._loci import (
     momentum_locus,
     single_valued_region,
 )
+from nonholo.analysis._tangent import lyapunov_exponents, tangent
 from nonholo.analysis.locomotion import Accessibility, GeometricPhase, LocalConnection

@@ -351,10 +351,10 @@ def heteroclinic(
     system = _top_or_sleigh(where, as_discretization(where, discrete))
     one_start("heteroclinic", energy=energy, momentum=momentum, displacement=displacement)
     sign = choice("heteroclinic(side=...)", side, (1, -1))
-    start = {"momentum": momentum, "displacement": displacement}
     if energy is not None:
-        start["momentum"] = middle(system, energy, sign)
-    point = simulate(discrete, **start, configuration=configuration, steps=1)[:1]
+        momentum = middle(system, energy, sign)
+    start = {"momentum": momentum, "displacement": displacement, "configuration": configuration}
+    point = simulate(discrete, **start, steps=1)[:1]
     return HeteroclinicOrbit(both_ways("heteroclinic(...)", point), asymptotics(point))
 
 

@@ -28,9 +28,6 @@ _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may h
 _OTHERS, _SPREAD = 3, 0.3
 _RTOL, _ATOL = 1e-11, 1e-12  # of the equations of variation
 
-Move = Callable[[Array, Array, Array], tuple[Array, Array]]
-"""Takes time, pose and momentum to velocity and rate; of a map to the next pose and the change of momentum."""
-
 
 def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
     """Return the changes beside a state of a system on a group, or of its map, and what gives states beside it."""
@@ -54,13 +51,8 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
         change[:count, dim:] = np.diff(momenta, axis=0)
     rows = np.zeros((len(slope), 0, slope.shape[-1]))
     names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
-    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, _frame(slope[0], dim))
+    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, True)
     return local, functools.partial(_pose_beside, system, g, r)
-
-
-def _frame(slope: Float[np.ndarray, "m m"], places: int) -> Float[np.ndarray, "m m"]:
-    """Return the rows of the places of derivatives, and zeros."""
-    return np.where(np.arange(len(slope))[:, None] < places, slope, 0.0)
 
 
 def _pose_beside(system: Any, g: Array, r: Array, xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
@@ -118,7 +110,8 @@ def _refuse(where: str, system: Any) -> None:
         raise error(where, "have forces that do not depend on time", got, remedy)
 
 
-def _flowing(system: Any) -> Move:
+def _flowing(system: Any) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+    """Return the function that takes time, pose and momentum to velocity and rate."""
     field, group, k = vector_field(system), system.group, system.rank
 
     def move(time: Array, g: Array, r: Array) -> tuple[Array, Array]:
@@ -128,7 +121,9 @@ def _flowing(system: Any) -> Move:
     return move
 
 
-def _stepping(discrete: Discretization) -> Move:
+def _stepping(discrete: Discretization) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+    """Return the function that takes time, pose and momentum to the next pose and the change of momentum."""
+
     def move(_: Array, g: Array, r: Array) -> tuple[Array, Array]:
         pair = simulate(discrete, momentum=r, configuration=g, steps=1, throw=False)
         return pair.configuration[-1], pair.restricted_momentum[-1] - r
@@ -211,9 +206,8 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     pairs = zip(steady, tangents.slopes(motion, *others), strict=True)
     change, slope, rows = (np.concatenate(pair) for pair in pairs)
     names = _names_of_coordinates(motion.system)
-    frame = None if coordinates else _frame(steady[1][0], size)
     times = np.append(0.0, tangents.LATER)
-    local = Local(names, size, state, change, slope, rows, times, units, frame)
+    local = Local(names, size, state, change, slope, rows, times, units, not coordinates)
     return local, functools.partial(_coordinates_beside, motion, x, v)
 
 

@@ -14,7 +14,6 @@ from nonholo.systems import have_same_rows
 
 _SAME_TIME = 1e-9  # in units of the shortest time between two states
 _ROUNDING = 1e-12  # errors below this part of a quantity say nothing of an order
-Rows = tuple[AbstractOrbit, np.ndarray]
 _REMEDY = "Pass what `simulate`, `flow` or `Orbit.from_poses` returned."
 
 
@@ -228,7 +227,7 @@ def _check_alike(orbit: AbstractOrbit, flow: AbstractOrbit) -> None:
         raise error(where, "have the constraint of the orbit", "another constraint", remedy)
 
 
-def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:
+def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[tuple[AbstractOrbit, np.ndarray], ...]:
     """Return both orbits and the rows that are at the same times; a flow that knows its states between at new times."""
     for one, other in ((orbit, flow), (flow, orbit)):
         if other.span is not None:

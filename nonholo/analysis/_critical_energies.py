@@ -8,19 +8,19 @@ with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy 
 the circle of axes. For n > 3 it has a lower bound. Theory: docs/theory/critical-energies.md.
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+import functools
+from typing import Any
 
 import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.planar import check_conserves_energy
-from nonholo.base.checks import error, instance
+from nonholo.base.checks import error
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.results import result
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization, refuse_composition
+from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.branching import Landscape, landscape
 from nonholo.systems import NormalForm
 
@@ -147,14 +147,11 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 
 
 def _top_form(where: str, discrete: Any) -> NormalForm:
-    remedy = "Pass `discretize(SuslovTop(J), time_step)`."
-    instance(where, discrete, Discretization, "be a discretized Suslov top", remedy)
-    form = discrete.system.normal_form
+    form, remedy = as_discretization(where, discrete).system.normal_form, "Pass `discretize(SuslovTop(J), time_step)`."
     if form is None or form.is_sleigh:
         if form is not None and form.is_planar:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
         raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
-    refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
     check_conserves_energy(where, discrete, "conserve the energy")
     return form
 
@@ -210,44 +207,21 @@ def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
     return points
 
 
-class Directions(NamedTuple):
-    r"""The numbers that the energy and the folds over directions u need.
+def over_directions(u: Float[np.ndarray, "K 2"], B: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, ...]:
+    r"""Return what energy and folds over unit vectors need.
 
-    Attributes:
-        b: $u\cdot Bu$.
-        slope: $c\cdot Bu/D$.
-        sharp: $s = (c\cdot u^\perp)/\sqrt D$.
-        along: $(c\cdot u)\,b/D$.
+    It is $b = u\cdot Bu$, $p = c\cdot Bu/D$, $s = (c\cdot u^\perp)/\sqrt D$, $\gamma = (c\cdot u)\,b/D$.
     """
-
-    b: Float[np.ndarray, "K"]
-    slope: Float[np.ndarray, "K"]
-    sharp: Float[np.ndarray, "K"]
-    along: Float[np.ndarray, "K"]
-
-    @classmethod
-    def over(cls, u: Float[np.ndarray, "K 2"], B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> "Directions":
-        """Return them for unit vectors."""
-        D, Bu = np.linalg.det(B), u @ B
-        b = np.einsum("ki,ki->k", u, Bu)
-        return cls(b, Bu @ c / D, (u[:, 0] * c[1] - u[:, 1] * c[0]) / np.sqrt(D), (u @ c) * b / D)
-
-    def ridge(self) -> Float[np.ndarray, "K"]:
-        r"""Return $x = \cot(\theta/2)$ where the energy is greatest on the ray; 0, half-turns, where it only grows."""
-        return np.sqrt(np.maximum(1 - 2 * self.sharp**2, 0.0))
-
-    def fold(self) -> Float[np.ndarray, "K"]:
-        r"""Return the first fold on the ray, the largest root of $x^3 - px^2 - (1 - 2s^2)x + 2\gamma - p$."""
-        rest = zip(-self.slope, 2 * self.sharp**2 - 1, 2 * self.along - self.slope, strict=True)
-        return np.array([max(real_cubic_roots(1.0, *map(float, row))[1:]) for row in rest])
-
-    def energy(self, x: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
-        r"""Return $b\,(x^2 + s^2)/(1 + x^2)^2$, the energy times $h^2/2$."""
-        return self.b * (x * x + self.sharp**2) / (1 + x * x) ** 2
+    D, Bu = np.linalg.det(B), u @ B
+    b = np.einsum("ki,ki->k", u, Bu)
+    return b, Bu @ c / D, (u[:, 0] * c[1] - u[:, 1] * c[0]) / np.sqrt(D), (u @ c) * b / D
 
 
 def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float:
     r"""Return $h^2/2$ times the least energy at which a ray from the identity meets a fold or its ridge.
+
+    With $x = \cot(\theta/2)$ the first fold is the largest root of $x^3 - px^2 - (1 - 2s^2)x + 2\gamma - p$. The energy
+    $b\,(x^2 + s^2)/(1 + x^2)^2$ is greatest on the ridge, $x^2 = 1 - 2s^2$, or at half-turns, where it only grows.
 
     Args:
         B: Inertia along the constraint, symmetric and positive definite.
@@ -258,22 +232,20 @@ def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float
 
     def least(angle: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
         u = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ root
-        over = Directions.over(u / np.linalg.norm(u, axis=1)[:, None], B, c)
-        return over.energy(np.maximum(over.fold(), over.ridge()))
+        b, p, s, gamma = over_directions(u / np.linalg.norm(u, axis=1)[:, None], B, c)
+        rows = zip(-p, 2 * s**2 - 1, 2 * gamma - p, strict=True)
+        fold = np.array([max(real_cubic_roots(1.0, *map(float, row))[1:]) for row in rows])
+        x = np.maximum(fold, np.sqrt(np.maximum(1 - 2 * s**2, 0.0)))
+        return b * (x * x + s**2) / (1 + x * x) ** 2
 
     angles = _angles(B, c, root)
     samples = least(angles)
     low = np.flatnonzero((samples <= np.roll(samples, 1)) & (samples <= np.roll(samples, -1)))
     ends = np.stack([np.roll(angles, 1)[low], np.roll(angles, -1)[low]], axis=1)
     ends[ends[:, 0] > ends[:, 1], 0] -= 2 * np.pi
-    return min([float(samples.min()), *(_least_between(least, pair) for pair in ends)])
-
-
-def _least_between(least: Callable, ends: Float[np.ndarray, "2"]) -> float:
-    """Return the least value between two angles."""
-    minimize: Any = scipy.optimize.minimize_scalar
-    minimum = minimize(lambda a: least(np.array([a]))[0], bounds=ends, method="bounded", options={"xatol": 1e-12})
-    return float(minimum.fun)
+    search: Any = functools.partial(scipy.optimize.minimize_scalar, method="bounded", options={"xatol": 1e-12})
+    minima = [search(lambda a: least(np.array([a]))[0], bounds=pair) for pair in ends]
+    return min([float(samples.min()), *(float(minimum.fun) for minimum in minima)])
 
 
 def _angles(B: np.ndarray, c: np.ndarray, root: np.ndarray) -> Float[np.ndarray, "K"]:

@@ -12,10 +12,10 @@ import numpy as np
 
 from nonholo.analysis._linearize import SteadyMotion, steady_motion
 from nonholo.analysis.planar import check_conserves_energy, planar_variety, restricted_momenta
-from nonholo.base.checks import array, error, instance, positive, refuse_given, shape_of, shown, trailing
+from nonholo.base.checks import array, error, positive, refuse_given, shape_of, shown, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float, Inexact
-from nonholo.discrete import Discretization, momentum_slope, weights
+from nonholo.discrete import Discretization, as_discretization, momentum_slope, weights
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, Equilibria, NormalForm, refuse_fixed_in_space, refuse_forces
 
@@ -103,33 +103,35 @@ def equilibria(
         refuse_given("equilibria", "be left out beside a configuration", "Pass one of them.", energy=(energy, 1.0))
         return steady_motion(system, configuration, body_velocity)
     remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
-    body, step = _body_and_steps("equilibria(system=...)", system, remedy)
+    body = _checked_body("equilibria(system=...)", system, remedy)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
-    family = body.equilibria()
-    if body.normal_form is None and step is not None and len(family.subspace) < body.rank:
+    family, discrete = body.equilibria(), system if isinstance(system, Discretization) else None
+    if body.normal_form is None and discrete is not None and len(family.subspace) < body.rank:
         got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
         raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
-    return _spectrum(body, step, family, level)
+    return _spectrum(body, discrete, family, level)
 
 
 def _spectrum(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
+    body: AbstractLLSystem, discrete: Discretization | None, family: Equilibria, level: float
 ) -> EquilibriumSpectrum:
     """Return what is known of a linear space of equilibria; multipliers and the highest energy of tops and sleighs."""
     rows, attracting, form = family.subspace, family.attracting, body.normal_form
-    others = tuple(_spectrum(body, steps, other, level) for other in family.others)
+    others = tuple(_spectrum(body, discrete, other, level) for other in family.others)
     line = rows[0] if form is None and len(rows) == 1 < body.rank else None
     direction = line if attracting is None else attracting
     if direction is None:
-        multipliers = None if steps is None else np.zeros(0)
+        multipliers = None if discrete is None else np.zeros(0)
         return EquilibriumSpectrum(rows, None, None, np.zeros(0), multipliers, others=others)
     velocity = _with_energy(body, direction, level)
     if form is None:
         rates = body.transverse_rates(velocity, rows)
         return EquilibriumSpectrum(rows, attracting, velocity, rates, None, others=others)
     rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
-    rest: Any = (None,) if steps is None else (_multipliers(body, velocity, rates, steps), _highest_energy(body, steps))
-    return EquilibriumSpectrum(rows, attracting, velocity, rates, *rest)
+    if discrete is None:
+        return EquilibriumSpectrum(rows, attracting, velocity, rates, None)
+    multipliers = _multipliers(discrete, velocity, rates)
+    return EquilibriumSpectrum(rows, attracting, velocity, rates, multipliers, highest_energy(discrete))
 
 
 def _with_energy(body: AbstractLLSystem, direction: Float[np.ndarray, "dim"], level: float) -> Float[np.ndarray, "dim"]:
@@ -144,14 +146,11 @@ def _with_energy(body: AbstractLLSystem, direction: Float[np.ndarray, "dim"], le
 
 def highest_energy(discrete: Discretization) -> float | None:
     r"""Return the energy above which the discrete map has no equilibrium, $q_c/(2h^2|c|^2)$ for tops; None if none."""
-    return _highest_energy(cast("AbstractLLSystem", discrete.system), _steps(discrete))
-
-
-def _highest_energy(body: AbstractLLSystem, steps: Float[np.ndarray, "S"]) -> float | None:
+    body = cast("AbstractLLSystem", discrete.system)
     velocity, form = body.equilibria().attracting, body.normal_form
     if velocity is None or form is None or form.arm != 0:
         return None
-    turn = np.abs(steps).max() * float(body.group.angle(velocity))
+    turn = np.abs(_steps(discrete)).max() * float(body.group.angle(velocity))
     return float(body.constrained_energy(velocity @ np.asarray(body.inertia_operator)) / turn**2)
 
 
@@ -160,37 +159,34 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
     return float(discrete.time_step) * weights(discrete.order)
 
 
-def _body_and_steps(where: str, value: Any, remedy: str) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
-    """Return the body and the time steps of the substeps, one for order 2."""
+def _checked_body(where: str, value: Any, remedy: str) -> AbstractLLSystem:
+    """Return the free body of a left-invariant system, or of its map that conserves energy."""
     body = value.system if isinstance(value, Discretization) else value
     refuse_forces(where, body)
     refuse_fixed_in_space(where, body, remedy)
-    left = cast(AbstractLLSystem, body)
-    if not isinstance(value, Discretization):
-        return left, None
-    check_conserves_energy(where, value, "conserve the energy")
-    return left, _steps(value)
+    if isinstance(value, Discretization):
+        check_conserves_energy(where, value, "conserve the energy")
+    return cast(AbstractLLSystem, body)
 
 
 def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
     """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
     form = cast("NormalForm", body.normal_form)
     w = np.linalg.solve(body.form_map.T, w)
-    if form.arm == 0:  # as of tops
-        return _turning(form.stiffness_matrix, form.coupling, w[: len(form.coupling)])
-    return -form.mass * form.arm * w[-1] / form.moments
-
-
-def _turning(B: Float[np.ndarray, "k k"], c: Float[np.ndarray, "k"], w: Float[np.ndarray, "k"]) -> np.ndarray:
+    if form.arm != 0:  # not as of tops
+        return -form.mass * form.arm * w[-1] / form.moments
+    c = form.coupling
     across = np.linalg.svd(c[None, :])[2][1:].T
-    return -np.linalg.norm(w) * np.linalg.norm(c) * np.linalg.eigvalsh(across.T @ np.linalg.solve(B, across))
+    turning = np.linalg.eigvalsh(across.T @ np.linalg.solve(form.stiffness_matrix, across))
+    return -np.linalg.norm(w[: len(c)]) * np.linalg.norm(c) * turning
 
 
-def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray, steps: np.ndarray) -> np.ndarray:
+def _multipliers(discrete: Discretization, velocity: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """Return the products, over the substeps of a step, of their multipliers."""
-    sine = np.abs(steps[:, None]) * float(body.group.angle(velocity))
+    steps = _steps(discrete)
+    sine = np.abs(steps[:, None]) * float(discrete.system.group.angle(velocity))
     if sine.max() > 1:
-        remedy = f"Lower the energy, to {_highest_energy(body, steps):.6g} at most, or the time step."
+        remedy = f"Lower the energy, to {highest_energy(discrete):.6g} at most, or the time step."
         got = f"time_step * angular velocity = {sine.max():.6g}"
         raise error("equilibria(energy=...)", "belong to a step of at most 90 degrees", got, remedy)
     share, change = (1 + np.sqrt((1 - sine) * (1 + sine))) / 2, steps[:, None] * rates / 2
@@ -244,7 +240,7 @@ def lyapunov_function(system: AbstractLLSystem | Discretization) -> LyapunovFunc
         True
     """
     where, remedy = "lyapunov_function(system=...)", "Pass a SuslovTop, a sleigh, or the discretization of one."
-    body, _ = _body_and_steps(where, system, remedy)
+    body = _checked_body(where, system, remedy)
     family = body.equilibria()
     if body.normal_form is None and len(family.subspace) < body.rank:
         remedy = "Of other systems no such function of the discrete map is known."
@@ -315,7 +311,7 @@ class InvariantMeasure:
             displacement: W on the displacement variety, leading axes free. At a fold the value is infinite.
 
         Raises:
-            ValueError: A flow, a wrong shape, a value that is not finite.
+            ValueError: A flow, a composition, a wrong shape, a value that is not finite.
 
         Example:
             >>> measure = invariant_measure(nh.discretize(nh.ChaplyginSleigh(1.0, 0.75, 0.5), 0.5))
@@ -323,7 +319,7 @@ class InvariantMeasure:
             0.818181818182
         """
         where = "InvariantMeasure.jacobian(displacement=...)"
-        discrete = self._discrete(where)
+        discrete = as_discretization(where, self.motion)
         shape = discrete.system.group.identity.shape
         leading = (None,) * (len(shape_of(displacement)) - 2)
         W = array(where, displacement, leading + shape, "Pass `orbit.displacement`.")
@@ -333,10 +329,10 @@ class InvariantMeasure:
         r"""Return $\log|\det \partial r_k/\partial r_0|$ along an orbit of the map, the sum over its steps.
 
         Raises:
-            ValueError: A flow, an orbit of another motion, an orbit with states left out.
+            ValueError: A flow, a composition, an orbit of another motion, an orbit with states left out.
         """
         where = "InvariantMeasure.log_volume(orbit=...)"
-        discrete = self._discrete(where)
+        discrete = as_discretization(where, self.motion)
         if not isinstance(orbit, Orbit) or orbit.motion is not discrete:
             remedy = "Pass an orbit of the same discretization to the measure of `orbit.motion`."
             raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
@@ -345,10 +341,6 @@ class InvariantMeasure:
             raise error(where, "hold every step", got, "Run it with save_every=1.")
         steps = np.log(np.abs(step_determinants(discrete, orbit.displacement[:-1])))
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
-
-    def _discrete(self, where: str) -> Discretization:
-        remedy = "Pass the result of `discretize`."
-        return instance(where, self.motion, Discretization, "belong to a discrete map", remedy)
 
 
 def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:

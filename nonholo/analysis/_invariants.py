@@ -14,19 +14,9 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
-from nonholo.systems import (
-    AbstractSystem,
-    NormalForm,
-    alike_in_time,
-    direction_lengths,
-    gyroscopic_form,
-    null_space,
-    refuse_forces,
-    row_space,
-)
+from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
-_HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
 _MOST_ENTRIES = 1_000_000  # of displacements of arrowheads, whose logarithms are taken
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
@@ -84,42 +74,27 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     if len(any_orbit(where := "invariants(orbit=...)", orbit)) == 0:
         raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
-    work = orbit.known_work
-    return Invariants(
-        states=len(orbit),
-        steps=int(np.ptp(orbit.step)) if orbit.is_discrete else 0,
-        energy_drift=_energy_drift(orbit.energy, work, forced=driven),
-        outcome=orbit.outcome,
-        work=float(work[-1]) if driven else None,
-        **(_of_body(orbit) if isinstance(orbit, Orbit) else _in_coordinates(orbit)),
-    )
+    energy, work, steps = orbit.energy, orbit.known_work, int(np.ptp(orbit.step)) if orbit.is_discrete else 0
+    size = np.abs(energy if driven else energy[0]).max() or 1.0
+    drift = float(np.abs(energy - energy[0] - work).max() / size)
+    rest = _of_body(orbit) if isinstance(orbit, Orbit) else _in_coordinates(orbit)
+    return Invariants(len(orbit), steps, drift, *rest, orbit.outcome, float(work[-1]) if driven else None)
 
 
-def _in_coordinates(orbit: Any) -> dict[str, Any]:
-    return {
-        "constraint_residual": float(orbit.constraint_residual.max()),
-        "group_residual": None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration))),
-        "reversal_defect": None,
-        "largest_step_angle": None,
-    }
+def _in_coordinates(orbit: Any) -> tuple[float, float | None, None, None]:
+    """Return the residuals of constraint and group; defect and angle are not measured."""
+    off_group = None if orbit.coordinates else float(np.max(orbit.space.residual(orbit.configuration)))
+    return float(orbit.constraint_residual.max()), off_group, None, None
 
 
-def _of_body(orbit: Orbit) -> dict[str, Any]:
-    group = orbit.system.group
-    stride = max(1, len(orbit) // (_SAMPLED if group.dim == 3 else _SAMPLED_LARGE))
+def _of_body(orbit: Orbit) -> tuple[float, float | None, float | None, float | None]:
+    """Return the residuals of constraint and group, the reversal defect and the largest angle of a step."""
+    stride = max(1, len(orbit) // (_SAMPLED if orbit.system.group.dim == 3 else _SAMPLED_LARGE))
     sample = orbit[::stride] if stride > 1 else orbit
-    discrete = orbit.motion if isinstance(orbit.motion, Discretization) else None
-    return {
-        "constraint_residual": float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0)),
-        "group_residual": None if orbit.canonical_pose is None else _group_residual(sample),
-        "reversal_defect": None if discrete is None else _reversal_defect(discrete, sample),
-        "largest_step_angle": None if orbit.cayley is None else _largest_angle(sample),
-    }
-
-
-def _energy_drift(energy: Float[np.ndarray, "K"], work: Any, *, forced: bool) -> float:
-    size = np.abs(energy if forced else energy[0]).max()
-    return float(np.abs(energy - energy[0] - work).max() / (size or 1.0))
+    residual = float(np.abs(orbit.motion.constraint_residual(sample)).max(initial=0.0))
+    off_group = None if orbit.canonical_pose is None else _group_residual(sample)
+    angle = None if orbit.cayley is None else _largest_angle(sample)
+    return residual, off_group, _reversal_defect(sample), angle
 
 
 def _largest_angle(orbit: Orbit) -> float | None:
@@ -142,8 +117,11 @@ def _group_residual(orbit: Orbit) -> float:
     return float(change if group.pose_size < group.size**2 else max(change, group.residual(orbit.configuration).max()))
 
 
-def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled_route if discrete.forces is None else None
+def _reversal_defect(orbit: Orbit) -> float | None:
+    """Return the largest miss of a step forward and back; None of flows, forced motions and those not compiled."""
+    motion: Any = orbit.motion
+    is_free = isinstance(motion, Discretization) and motion.forces is None
+    route = motion.route.compiled_route if is_free else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))
@@ -296,64 +274,3 @@ def _vanishing(conditions: Float[np.ndarray, "c m"], scale: float) -> Float[np.n
 def _span(rows: Float[np.ndarray, "n dim"]) -> Float[np.ndarray, "n dim"]:
     """Return orthonormal rows that span what independent ones do, whose sizes may differ by any factor."""
     return row_space(rows / np.linalg.norm(rows, axis=1, keepdims=True), 0.0)
-
-
-def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
-    r"""Return the finite-time Lyapunov exponents along an orbit, largest first.
-
-    $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
-       \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
-
-    Benettin's method: a frame, orthonormal in the body's units, is carried by the tangent map (`Orbit.tangent`) and
-    made orthonormal again at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where
-    nothing else decides them, in coordinates of configurations with admissible velocities. An exponent of a map is
-    minus infinity where a step takes a direction away.
-
-    Args:
-        orbit: One that has a `tangent`.
-
-    Raises:
-        ValueError: An orbit without a tangent map, or of a single state; a flow with times so far apart that rounding
-            hides a direction that decays.
-
-    Example:
-        A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
-
-        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
-        >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
-        array([ 0. , -0.4])
-    """
-    steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
-    if not len(steps):
-        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
-    if not orbit.is_discrete:
-        _check_spread(steps)
-    frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
-    for step in steps:
-        frame, triangle = np.linalg.qr(step @ frame)
-        with np.errstate(divide="ignore"):
-            growth += np.log(np.abs(triangle.diagonal()))
-    return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
-
-
-def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
-    """Return the derivatives of states in units of the body and of a time."""
-    if not isinstance(orbit, Orbit):
-        from nonholo.lagrange_dalembert import tangents
-
-        maps, rows, units, places = tangents.changes(orbit)
-        return tangents.among_admissible(maps, rows, alike_in_time(maps, units, places, np.ptp(orbit.time)))
-    system, maps = orbit.system, orbit.tangent
-    lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
-    momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2)
-    units = np.append(system.displacement_units, momenta)[-maps.shape[-1] :]
-    units = alike_in_time(maps, units, len(units) - len(momenta), np.ptp(orbit.time))
-    return maps * (units / units[:, None])
-
-
-def _check_spread(steps: Float[np.ndarray, "L d d"]) -> None:
-    """Refuse tangent maps of a flow that show a direction to few digits."""
-    conditions = np.linalg.cond(steps)
-    if not (conditions <= 1 / _HIDDEN).all():
-        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
-        raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")

@@ -13,16 +13,8 @@ from nonholo.base.checks import array, count, error, function, instance, needs, 
 from nonholo.base.memo import Keeper
 from nonholo.base.results import result
 from nonholo.base.types import Bool, Float, Inexact, Int
-from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
-from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import (
-    AbstractCoordinateDiscretization,
-    AbstractCoordinateSystem,
-    AbstractSystem,
-    extent_of,
-    refuse_slip,
-)
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, extent_of
 
 _CHOICES = 1000  # of velocities
 _SHARE = 0.05  # least singular value of the dependent columns of constraints, orthonormal in units of equal energy
@@ -42,8 +34,7 @@ class Local(NamedTuple):
         rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
         times: Those of the first states, which are the steady motion.
         units: Units of the velocities, in which each has the same kinetic energy, shape (n,).
-        frame: How places move that are seen from a frame which moves with the state: the derivatives of their rates,
-            and zeros as those of the velocities, shape (m, m); None in coordinates.
+        is_carried: Whether places are seen from a frame that moves with the state; those in coordinates are not.
     """
 
     names: tuple[str, ...]
@@ -54,7 +45,7 @@ class Local(NamedTuple):
     rows: Float[np.ndarray, "K s m"]
     times: Float[np.ndarray, "1+L"]
     units: Float[np.ndarray, "n"]
-    frame: Float[np.ndarray, "m m"] | None
+    is_carried: bool
 
 
 class Reduced(NamedTuple):
@@ -111,8 +102,7 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
     change, count, sizes = local.change[:, independent], len(local.times), _sizes(local)
     ratios = sizes / sizes[:, None]
-    depends = _depends(slope * ratios[independent][:, independent])
-    matters = _influences(depends, int((independent < local.places).sum()))
+    matters = _influences(slope * ratios[independent][:, independent], int((independent < local.places).sum()))
     states = independent[matters]
     matrix, defects, units = slope[:count, matters][:, :, matters], change[:count, matters], sizes[states]
     rates, largest = matrix * ratios[states][:, states], np.abs(local.slope[0] * ratios).max()
@@ -142,22 +132,17 @@ def _sizes(local: Local) -> Float[np.ndarray, "m"]:
     return sizes
 
 
-def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
-    """Return which change depends on which state, at any state where the derivatives are finite."""
-    finite = slope[np.isfinite(slope).all(axis=(1, 2))]
-    return np.any(np.abs(finite) > _UNSEEN * np.abs(finite).max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
+def _influences(slope: Float[np.ndarray, "K d d"], places: int) -> Bool[np.ndarray, "d"]:
+    """Return which states the velocities depend on, directly or by other states; velocities are among them.
 
-
-def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarray, "d"]:
-    """Return which states the velocities depend on, directly or by other states; velocities are among them."""
+    A change depends on a state if it does so anywhere where the derivatives are finite.
+    """
+    finite = np.abs(slope[np.isfinite(slope).all(axis=(1, 2))])
+    depends = np.any(finite > _UNSEEN * finite.max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
     matters = np.arange(len(depends)) >= places
     while np.any(more := depends[matters].any(axis=0) & ~matters):
         matters |= more
     return matters
-
-
-Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Takes changes of coordinates and of velocities to a configuration and a body velocity."""
 
 
 @result
@@ -269,17 +254,18 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     return Linearization(matrix, names, ignorable, step, equations.rate)
 
 
-def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
-    """Return the changes beside a state, and the function that gives the states beside it."""
+def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
+    """Return the changes beside a state, and what takes changes of places and velocities to a state beside it."""
     if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
-        return _motions(owner).beside_state(owner, system, configuration, velocity)
+        return door(owner).beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."
         raise error(f"{owner}(system=...)", "be a system or its map", shown(system), remedy)
-    return _motions(owner).on_group(owner, system, configuration, velocity)
+    return door(owner).on_group(owner, system, configuration, velocity)
 
 
-def _motions(owner: str) -> Any:
+def door(owner: str) -> Any:
+    """Return the motions beside a state, for a caller whom an error names where there is no JAX."""
     with needs("jax", owner):
         from nonholo.analysis import _beside
     return _beside
@@ -349,25 +335,22 @@ def _steady_state(subject: Any, flow: Any, state: tuple[Any, Any]) -> tuple[Any,
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", subject, *state)
         equations = _equations_of(flow, local)
-        change, units = _correction(local._replace(frame=None) if is_rest else local, equations)
+        matrix, defect = _balance(local._replace(is_carried=False) if is_rest else local, equations)
+        is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
+        change = equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect))
         state = beside(-change[: local.places], -change[local.places :])
         velocity = local.state[local.places :]
         begin = begin or (velocity, equations.units[local.places :])
         if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
-            if _has_stopped(velocity, *begin):
+            speed, before = (np.abs(v / begin[1]).max(initial=0.0) for v in (velocity, begin[0]))
+            if speed < _AT_REST * before:
                 remedy = "Guess closer to one, or leave body_velocity out."
                 raise error(_NEAR, "be near a steady motion", "one from which corrections lead to rest", remedy)
             return state
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(_NEAR, "be near a steady motion", got, "Guess closer to one.")
-
-
-def _has_stopped(velocity: np.ndarray, first: np.ndarray, units: np.ndarray) -> bool:
-    """Return whether nothing is left of a velocity, in units of where it was."""
-    speed, before = (np.abs(v / units).max(initial=0.0) for v in (velocity, first))
-    return bool(speed < _AT_REST * before)
 
 
 def _equations_of(flow: Any, local: Local) -> Reduced:
@@ -382,13 +365,6 @@ def _equations_of(flow: Any, local: Local) -> Reduced:
     return equations
 
 
-def _correction(local: Local, equations: Reduced) -> tuple[Float[np.ndarray, "m"], Float[np.ndarray, "m"]]:
-    """Return a correction of all numbers of a state, and their units."""
-    matrix, defect = _balance(local, equations)
-    is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
-    return equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect)), units
-
-
 def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
     r"""Return derivatives of what vanishes in a steady motion by the states that matter, and its values, in units.
 
@@ -396,11 +372,12 @@ def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
     steady if its velocity is constant at all its poses: $\dot w(g e^{\xi} e^{t (v + w)}, v + w) = 0$.
     """
     states, units = equations.states, equations.units
-    if local.frame is None:
+    if not local.is_carried:
         sizes, matrix, change = units[states], equations.matrix, local.change[0][states]
     else:
         rates, count = slice(local.places, None), len(local.times)
-        transport = scipy.linalg.expm(local.times[:, None, None] * local.frame) @ equations.directions
+        frame = np.where(np.arange(len(units))[:, None] < local.places, local.slope[0], 0.0)
+        transport = scipy.linalg.expm(local.times[:, None, None] * frame) @ equations.directions
         sizes, matrix = np.tile(units[rates], count), np.concatenate(local.slope[:count, rates] @ transport)
         change = local.change[:count, rates].ravel()
     return matrix * (units[states] / sizes[:, None]), change / sizes / equations.extent
@@ -510,60 +487,3 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
     tight = _TIGHT * np.abs(ends).max()
     root: Any = brentq(change, *ends, xtol=tight) if crosses else bisect(is_alike, *ends, xtol=tight)
     return float(root)
-
-
-_WHERE = "Orbit.tangent"
-
-
-def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
-    r"""Return the derivative of each state of an orbit by the one before, $\partial r_{k+1}/\partial r_k$.
-
-    Of the discrete map, without JAX from closed derivatives along the displacement variety,
-
-    $$ \frac{\partial r_{k+1}}{\partial r_k} = F'(W_k^{-1})\,F'(W_k)^{-1}, \qquad
-       F(W) = P(W)|_{\mathfrak d},\quad r_{k+1} = -F(W_k^{-1}), $$
-
-    for a left-invariant system, difference "matrix", constraint "skew" and order 2; of other maps by JAX. Where forces
-    depend on the pose, or the constraint is fixed in space, a state is $(\xi, r)$ with $\xi$ of the pose
-    $g\,e^\xi$, (K - 1, dim + k, dim + k). Of a flow without forces, of a constraint fixed in the body, from the Taylor
-    series of its equation of variation, between its times; of other flows by Runge-Kutta steps of that equation.
-
-    Args:
-        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
-
-    Raises:
-        ValueError: Another kind of orbit, a map under a table or a force that is a function.
-
-    Example:
-        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
-        >>> orbit = nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=1)
-        >>> orbit.tangent[0].round(3)
-        array([[0.961, 0.   ],
-               [0.   , 1.   ]])
-    """
-    as_orbit(_WHERE, orbit, "of one in coordinates take `orbit.tangent`.")
-    discrete, system = orbit.motion, orbit.system
-    refuse_slip(_WHERE, system)
-    if orbit.has_impacts.any():
-        raise error(_WHERE, "have no impacts", "some", "Pass the part of the orbit before the first one.")
-    if isinstance(discrete, ContinuousFlow):
-        if system.is_spatial or system.is_forced:
-            return _motions(_WHERE).along_flow(orbit)
-        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
-    if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
-        remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
-    if not orbit.has_every_step:
-        raise error(_WHERE, "have all states of the run", f"{len(orbit)} of them", "Run with save_every=1.")
-    if _has_closed_derivatives(discrete):
-        return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
-    return _motions(_WHERE).along(orbit)
-
-
-def _has_closed_derivatives(discrete: Discretization) -> bool:
-    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
-
-
-def _acts_from_outside(forces: Any) -> bool:
-    """Return whether forces do more than the state does: by a table, or by a function of the time."""
-    return forces is not None and (forces.table is not None or forces.function is not None)

@@ -13,7 +13,7 @@ from nonholo.base import checks
 from nonholo.base.checks import array, bounded_count, count, error, number, positive, shape_of, shown, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
-from nonholo.discrete import Discretization, refuse_composition
+from nonholo.discrete import Discretization, as_discretization
 
 
 @result
@@ -252,7 +252,10 @@ class Deltoid:
 
     def discriminant(self, restricted_momentum: Array) -> Float[np.ndarray, "..."]:
         r"""Return $27 - 18|\varkappa|^2 + 8\,\mathrm{Re}\,\varkappa^3 - |\varkappa|^4$, positive inside."""
-        trace = _trace(self.discrete, self._plane("discriminant", restricted_momentum))
+        strip, momentum = _strip(self.discrete), self._plane("discriminant", restricted_momentum)
+        pi, p1 = np.moveaxis(strip.canonical_momenta(momentum) * float(self.discrete.time_step), -1, 0)
+        phat = strip.arm * p1 + 2 * strip.mass * strip.arm**2
+        trace = (-(2 * phat + strip.inertia) + 2j * pi) / strip.inertia
         square = np.abs(trace) ** 2
         return 27 - 18 * square + 8 * np.real(trace**3) - square**2
 
@@ -305,25 +308,12 @@ def deltoid(discrete: Discretization) -> Deltoid:
         >>> curve.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
         [3, 1]
     """
-    discrete, variety = planar.planar_map("deltoid(discrete=...)", discrete)
-    if variety.blade is None:
-        raise error("deltoid(discrete=...)", "be of a sleigh", shown(discrete.system), "Tops have no deltoid.")
-    if variety.form.arm == 0:
-        remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."
-        raise error("deltoid(discrete=...)", "have a != 0", shown(discrete.system), remedy)
+    _checked_strip("deltoid(discrete=...)", discrete)
     return Deltoid(discrete, _restricted(discrete, 3 * np.exp(2j * np.pi * np.array([0.0, 1.0, -1.0]) / 3)))
 
 
 def _strip(discrete: Discretization) -> Strip:
     return cast(Strip, planar.planar_map("Deltoid", discrete)[1])
-
-
-def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
-    """Return kappa of restricted momenta."""
-    strip = _strip(discrete)
-    pi, p1 = np.moveaxis(strip.canonical_momenta(restricted) * float(discrete.time_step), -1, 0)
-    phat = strip.arm * p1 + 2 * strip.mass * strip.arm**2
-    return (-(2 * phat + strip.inertia) + 2j * pi) / strip.inertia
 
 
 def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray, "... 2"]:
@@ -405,13 +395,13 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
 
 
 def _checked_strip(where: str, discrete: Any) -> Strip:
-    remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
-    variety = planar.planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
+    """Return the displacements of a sleigh in the plane whose map has three branches."""
+    variety = planar.planar_variety(as_discretization(where, discrete).system)
     if not isinstance(variety, Strip):
-        raise error(where, "be a discretized Chaplygin sleigh", shown(discrete), remedy)
-    refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
+        remedy = "Tops have no deltoid: pass `discretize(ChaplyginSleigh(...), time_step)`."
+        raise error(where, "be of a sleigh in the plane", shown(discrete.system), remedy)
     planar.check_conserves_energy(where, discrete, "be the map with three branches")
     if variety.arm == 0:
-        remedy = "A balanced sleigh has two real branches, with angles D and pi - D, at every |p_theta + b p_1| < J/h."
-        raise error(where, "have its center of mass off the blade's normal", "a = 0", remedy)
+        remedy = "A balanced sleigh has two real branches, at D and pi - D, if |p_theta + b p_1| < J/h, else none."
+        raise error(where, "have a != 0, a center of mass off the blade's normal", shown(discrete.system), remedy)
     return variety

@@ -160,7 +160,7 @@ def test_a_closed_curve_of_maxima() -> None:
 test_refusals = refusals(
     (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
     (nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.1, 0.1], np.eye(3)), 0.1), r"Pass .discretize\(SuslovTop"),
-    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
+    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "be a discretized system"),
     (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
     ask=lambda discrete: nh.critical_energies(discrete),
 )
@@ -274,7 +274,7 @@ def test_extreme_offsets(a: float) -> None:
 test_other_bodies_are_refused = refusals(
     (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), "two real branches"),
     (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"), "three branches"),
-    (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretized Chaplygin sleigh"),
-    (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretized Chaplygin sleigh"),
+    (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "be of a sleigh in the plane"),
+    (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "be a discretized system"),
     ask=lambda discrete: nh.single_valued_region(discrete),
 )

@@ -83,8 +83,8 @@ def test_steps_of_an_orbit_are_counted_once() -> None:
 
 # Tops and balanced sleighs.
 test_refuses_other_systems = refusals(
-    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), r"`deltoid\(discrete=...\)` must be of a sleigh"),
-    (nh.ChaplyginSleigh(1.0, 1.0, 0.0), r"must have a != 0. .*two real values"),
+    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), r"`deltoid\(discrete=...\)` must be of a sleigh in the plane"),
+    (nh.ChaplyginSleigh(1.0, 1.0, 0.0), r"must have a != 0. .*two real branches"),
     ask=lambda system: deltoid(nh.discretize(system, 0.1)),
 )
 

@@ -9,7 +9,7 @@ import pytest
 import scipy
 
 import nonholo as nh
-from nonholo.analysis._critical_energies import Directions, fold_energy
+from nonholo.analysis._critical_energies import fold_energy, over_directions
 from nonholo.discrete import legendre
 
 BODIES = {  # the first three have D/|c|^2 between 2 and 3; the last two are outside the regular regime
@@ -196,8 +196,7 @@ def test_folds_in_polar_coordinates() -> None:
         e = (z0 * B @ z + force) @ np.linalg.solve(B, z0 * B @ z + force)
         f = D * z0 * (z0**2 - z @ z) + 2 * z0 * (z @ z) * (c @ across) ** 2 - c @ B @ z + 2 * (c @ z) * (z @ B @ z)
         f = f / D * np.hypot(x[0], 1.0) ** 3
-        over = Directions.over(u, B, c)
-        (b, p, s, along), X = (float(part[0]) for part in over), x[0]
+        (b, p, s, along), X = (float(part[0]) for part in over_directions(u, B, c)), x[0]
         kappa, alpha, k = 1 - s * s, c @ u[0], u[0] @ B @ across
         mu, rate = b / kappa, (2 * k * kappa - 2 * b * s * alpha / np.sqrt(D)) / kappa**2
         Y = X * X - 1 + 2 * s * s
@@ -205,7 +204,7 @@ def test_folds_in_polar_coordinates() -> None:
         cubic = X**3 - p * X * X - (1 - 2 * s * s) * X + 2 * along - p
         polar = (Y + 2 * kappa) * (eta * (X - alpha * mu / D) - s * kappa * rate / (2 * np.sqrt(D)))
         assert [cubic, polar] == pytest.approx([f, f], rel=1e-10, abs=1e-10 * (1 + p * p + along * along))
-        assert [over.energy(x)[0], mu / 4 * (1 - eta * eta)] == pytest.approx([e, e], rel=1e-11)
+        assert [b * (X * X + s * s) / (1 + X * X) ** 2, mu / 4 * (1 - eta * eta)] == pytest.approx([e, e], rel=1e-11)
 
 
 @pytest.mark.profile("problems", keep=["0.05", "0.3*"])

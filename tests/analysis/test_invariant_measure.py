@@ -233,7 +233,7 @@ test_what_is_not_known_is_refused = refusals(
     (lambda: nh.invariant_measure(RIGHT["Veselova top"][0]), r"must be a top or a sleigh\. Got VeselovaTop"),
     (lambda: nh.invariant_measure(_MAP).density([1.0, 1.0]), "not unique and in no known closed form"),
     (lambda: nh.invariant_measure(SYSTEMS["top 4"]).density([1.0, 1.0, 1.0]), "Got 3 admissible directions"),
-    (lambda: nh.invariant_measure(TOP).jacobian(np.eye(3)), "belong to a discrete map"),
+    (lambda: nh.invariant_measure(TOP).jacobian(np.eye(3)), "be a discretized system"),
     (
         lambda: nh.invariant_measure(_MAP).log_volume(nh.flow(TOP, **_SPEED, times=[0.0, 1.0])),
         "be an orbit of the measure's motion",

@@ -349,7 +349,7 @@ def test_what_depends_on_what_does_not_depend_on_units() -> None:
         state, still = np.zeros(6), np.zeros((4, 6))
         names = tuple("xyzuvw")
         scaled = slope * both[:, None] / both / time
-        result = reduced(Local(names, 3, state, still, scaled, rows, np.zeros(1), units, None))
+        result = reduced(Local(names, 3, state, still, scaled, rows, np.zeros(1), units, False))
         results.append((result.states, result.matrix / both[result.states][:, None] * both[result.states] * time))
     for states, matrix in results[1:]:
         np.testing.assert_array_equal(states, results[0][0])

@@ -334,8 +334,8 @@ def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> N
 def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     """A is constant, so F = -[A_right, A_left]: a robot that turns one wheel after the other moves aside."""
     turn, ahead = 0.25 / (2 * 0.5), 0.25 / 2
-    W = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]])
-    at = _equations.terms((), np.ones(3), W, np.zeros((3, 5, 2)), W, W)
+    W, dW = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]]), np.zeros((3, 5, 2))
+    at = _equations.terms((), np.ones(3), W, dW, W, dW)
     F = _equations.curvature(nh.SE(2), at)[:, 0, 1]
     np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
 

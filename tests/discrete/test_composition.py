@@ -305,6 +305,7 @@ test_what_a_composition_cannot_do_is_refused = refusals(
     (lambda: nh.discrete_legendre(_TOP4, np.eye(3)[0]), f"{_ONE} of 5 steps. Pass the discretization of order 2"),
     (lambda: nh.branches(_TOP4, momentum=[0.1, 0.2]), _ONE),
     (lambda: nh.critical_energies(_TOP4), _ONE),
+    (lambda: nh.invariant_measure(_TOP4).jacobian(np.eye(3)), _ONE),
     (lambda: nh.single_valued_region(nh.discretize(SLEIGH, 0.1, order=4)), _ONE),
     (lambda: nh.testing.check_discretization(_TOP4), _ONE),
 )

@@ -16,7 +16,7 @@ from nonholo.base.checks import array, choice, error, function, instance, needs,
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractCoordinateSystem, System, refuse_fixed_in_space
+from nonholo.systems import System
 
 _FLAT = 1e-10  # least singular value of scaled derivatives, relative to the largest
 _LEAST_FREE = 0.1  # numbers of a kind that tell its noise
@@ -189,13 +189,15 @@ def fit(
     choice("fit(loss=...)", loss, LOSSES)
     numbers, shapes = _vector(guess)
     ranges = _ranges(bounds, shapes, numbers)
-    model = _model(system_of, numbers, shapes)
+    with needs("jax", "fit"):
+        from nonholo.analysis.inverse._models import model_of
+    model = model_of(system_of, shapes, numbers)
     step = None if time_step is None else float(scale("fit(time_step=...)", time_step, "Pass the time step."))
     kinds, h = kinds_of(model.names, measurements, step, model.each(len(numbers)))
     trials = [{kind: rows[i] for kind, rows in kinds.items()} for i in range(len(next(iter(kinds.values()))))]
     starting = functools.partial(model.first, h, is_robust=loss != LOSSES[0])
     poses, starts = map(np.array, zip(*map(starting, trials), strict=True))
-    residuals_of = functools.partial(model.residuals, system_of, shapes, h)
+    residuals_of = functools.partial(model.residuals, model.program(system_of, shapes, h))
     problem = Problem(residuals_of, poses, kinds, len(numbers), starts.shape)
     levels = _noise_levels(noise, problem)
     search = Search(problem, ranges, lambda point: system_of(by_name(shapes, point[: len(numbers)])), loss, levels)
@@ -301,17 +303,3 @@ def _vector(guess: Any) -> tuple[np.ndarray, Any]:
 def _names(shapes: Any) -> list[str]:
     """Return a name for each number of the parameters."""
     return [f"{name}[{i}]" if shape else name for name, shape in shapes for i in range(int(np.prod(shape)))]
-
-
-def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> Any:
-    """Return the motions of the system of the guess."""
-    with needs("jax", "fit"):
-        from nonholo.analysis.inverse._models import GroupModel, coordinate_model, maker_of
-
-    system = system_of(by_name(shapes, numbers))
-    if isinstance(system, AbstractCoordinateSystem):
-        model = coordinate_model(system, system_of(by_name(shapes, numbers)))
-        return model._replace(maker=maker_of(system_of, shapes, numbers))
-    remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
-    refuse_fixed_in_space("fit(system_of=...)", system, remedy, shown(system))
-    return GroupModel(system, maker_of(system_of, shapes, numbers))

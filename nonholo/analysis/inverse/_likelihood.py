@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -68,21 +67,18 @@ class Problem:
     def slope(self, point: np.ndarray) -> np.ndarray:
         """Return their derivatives: a trial depends on its own start alone."""
         by_kind, parts, (T, width) = self.at(point), [], self.shape
+        is_own = np.eye(T, dtype=bool)[:, None, None, :, None]
         for kind, there in self.there.items():
             _, by_numbers, by_starts = by_kind[kind]
-            whole = np.zeros((*there.shape, self.count + T * width))
-            whole[..., : self.count] = by_numbers
-            for i in range(T):
-                whole[i, ..., self.count + i * width : self.count + (i + 1) * width] = by_starts[i]
-            parts.append(whole[there])
+            own = np.where(is_own, by_starts[..., None, :], 0.0).reshape(*there.shape, T * width)
+            parts.append(np.concatenate([by_numbers, own], axis=-1)[there])
         return np.concatenate(parts)
 
     def beginning(self, share: float) -> "Problem":
         """Return the problem of the first part of the record."""
-        kinds = {}
-        for kind, rows in self.kinds.items():
-            kinds[kind] = rows.copy()
-            kinds[kind][:, math.ceil(share * rows.shape[1]) :] = np.nan
+        count = next(iter(self.kinds.values())).shape[1]
+        is_early = np.arange(count)[:, None] < share * count
+        kinds = {kind: np.where(is_early, rows, np.nan) for kind, rows in self.kinds.items()}
         return dataclasses.replace(self, kinds=kinds, last=None)
 
     @functools.cached_property

@@ -14,6 +14,8 @@ from nonholo.orbit import AbstractOrbit
 Kinds = dict[str, Float[np.ndarray, "T K _"]]
 """Measured numbers of all trials by kind, "position", "turn" and "rate"; NaN where nothing was measured."""
 
+Trial = dict[str, np.ndarray]
+"""Measured numbers of one trial."""
 WHERE = "fit(measurements=...)"
 _OFF = 1e-3  # of a time step, by which times of samples may miss a node
 _LARGEST = 1 << 28  # bytes of a CSV file
@@ -153,7 +155,7 @@ _NEAR = 5  # nodes between the poses that a first velocity is taken from
 
 
 def first(
-    group: AbstractMatrixGroup, S: np.ndarray, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
+    group: AbstractMatrixGroup, S: np.ndarray, h: float, kinds: Trial, *, is_robust: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a first pose and a first start: velocity along rows S, and what is fitted of the change of pose.
 
@@ -169,7 +171,7 @@ def first(
     if "turn" not in poses and group != SE(2):
         raise error(WHERE, "have turns beside positions in space", "positions", "Measure turns, such as quaternions.")
     begin, end = ends = ends_of(poses)
-    g = _matrices(group, S, {kind: at_nodes(ends, *rows) for kind, rows in poses.items()}, poses, ends)
+    g = _matrices(group, S, poses, ends)
     velocity = group.log(group.inverse(g[0]) @ g[1]) / ((end - begin) * h)
     unseen = 0 if "position" in poses else kinds.get("position", np.zeros((0, 0))).shape[1]
     start = np.concatenate([np.linalg.lstsq(S.T, velocity)[0], np.zeros(group.dim - unseen)])
@@ -212,17 +214,20 @@ def at_nodes(where: tuple[int, ...], nodes: np.ndarray, rows: np.ndarray) -> np.
     return np.stack([np.interp(where, nodes, column) for column in rows.T], axis=1)
 
 
-def _matrices(
-    group: AbstractMatrixGroup, S: np.ndarray, at: dict[str, np.ndarray], poses: dict, ends: tuple[int, int]
-) -> np.ndarray:
+def chords_of(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the chords of a path after each of two nodes, as long as they are apart."""
+    return np.diff(at_nodes((*ends, 2 * ends[1] - ends[0]), nodes, rows), axis=0)
+
+
+def _matrices(group: AbstractMatrixGroup, S: np.ndarray, poses: dict, ends: tuple[int, int]) -> np.ndarray:
     """Return two poses as matrices; where no turn is measured, a body that moves forward along its blade."""
     g = np.broadcast_to(group.identity, (2, group.size, group.size)).copy()
-    if "position" in at:
-        g[:, :-1, -1] = at["position"]
-    turn = at.get("turn")
-    if turn is None:
-        later = at_nodes((ends[1], 2 * ends[1] - ends[0]), *poses["position"])
-        x, y = np.stack([np.diff(at["position"], axis=0)[0], np.diff(later, axis=0)[0]]).T
+    if "position" in poses:
+        g[:, :-1, -1] = at_nodes(ends, *poses["position"])
+    if "turn" in poses:
+        turn = at_nodes(ends, *poses["turn"])
+    else:
+        x, y = chords_of(ends, *poses["position"]).T
         blade = np.linalg.svd(S[:, :1].T)[2][-1] @ S  # a velocity without rotation
         turn = np.unwrap(np.arctan2(y, x) - np.arctan2(*(blade[:0:-1] * np.sign(blade[1] or 1.0))))[:, None]
     if turn.shape[1] == 1:

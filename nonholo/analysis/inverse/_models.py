@@ -1,16 +1,19 @@
 """Residuals of measurements of motions, on groups and in coordinates, and first states: in JAX, compiled once."""
 
+import abc
+import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.analysis.inverse import _measurements
 from nonholo.analysis.inverse._likelihood import Shapes, by_name
-from nonholo.analysis.inverse._measurements import WHERE, Names, at_nodes, ends_of, first, measured_rows, names_of
-from nonholo.base.checks import error
+from nonholo.analysis.inverse._measurements import WHERE, Names, Trial, first, names_of
+from nonholo.base.checks import error, shown
 from nonholo.base.traced import rows_above
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
@@ -21,17 +24,18 @@ from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
-from nonholo.systems import AbstractCoordinateSystem, reach_of
+from nonholo.systems import AbstractCoordinateSystem, reach_of, refuse_fixed_in_space
 
 _COPIES = 8  # of matrices at a node, and their derivatives
 
 
-class GroupModel(NamedTuple):
-    """Motions of a body on a group: what can be measured of them, and where they begin.
+@dataclasses.dataclass(frozen=True)
+class AbstractModel(abc.ABC):
+    """Motions of a system: what can be measured of them, and where they begin.
 
     Attributes:
-        system: The body of the guess.
-        maker: What makes the body, as JAX traces it.
+        system: The system of the guess.
+        maker: What makes the system, as JAX traces it.
     """
 
     system: Any
@@ -42,40 +46,55 @@ class GroupModel(NamedTuple):
         """The names of columns by kind."""
         return names_of(self.system.group)
 
+    def residuals(self, program: Any, numbers: Array, starts: Array, poses: Array, kinds: Trial) -> dict[str, Any]:
+        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts.
+
+        Trials run on through nodes at which nothing is measured, so that few numbers of steps are compiled. A table of
+        forces, which may end with the record, has its own number.
+        """
+        (run, *settings), nodes = program, next(iter(kinds.values())).shape[1]
+        room = nodes if getattr(self.system, "table", None) is not None else rows_above(nodes)
+        more = (0, 0), (0, room - nodes), (0, 0)
+        longer = {kind: np.pad(rows, more, constant_values=np.nan) for kind, rows in kinds.items()}
+        parts = in_double(run, *settings, numbers, starts, poses, longer)
+        return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
+
+
+class GroupModel(AbstractModel):
+    """Motions of a body on a group."""
+
     def each(self, count: int) -> float:
         """Return the bytes of a node under a number of parameters."""
         group = self.system.group
         return _COPIES * 8.0 * (1 + count + self.system.rank + group.dim) * group.size**2
 
-    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+    def first(self, h: float, kinds: Trial, *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
         """Return a first pose and a first start."""
         return first(self.system.group, self.system.constraint_subspace, h, kinds, is_robust=is_robust)
 
-    def residuals(
-        self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
-    ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
-        run = _compile_on_group(self.maker, system_of, shapes)
-        return _in_few_lengths(run, self.system, time_step, numbers, starts, *data)
+    def program(self, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> tuple[Any, ...]:
+        """Return compiled residuals of trials by kind with derivatives, and the time step."""
+        return _compile_on_group(self.maker, system_of, shapes), time_step
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
         """Return the motion of a trial."""
-        begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, pose)}
-        return simulate(discretize(system, h), **begin, steps=steps)
+        return simulate(discretize(system, h), **_first_state(system, start, pose), steps=steps)
 
 
-def _first_pose(system: Any, start: Array, pose: Array) -> Array:
-    """Return the pose that a start changes to; one along the constraint alone changes none."""
+def _first_state(system: Any, start: Array, pose: Array) -> dict[str, Array]:
+    """Return the first velocity, and the pose that a start changes to; one along the constraint alone changes none."""
     k, dim, xp = system.rank, system.group.dim, start.__array_namespace__()
-    return pose @ system.group.exp(xp.pad(start[k:], (0, k + dim - len(start)))) if len(start) > k else pose
+    if len(start) > k:
+        pose = pose @ system.group.exp(xp.pad(start[k:], (0, k + dim - len(start))))
+    return {"restricted_velocity": start[:k], "configuration": pose}
 
 
 @functools.lru_cache(maxsize=8)
 def _compile_on_group(_maker: Any, system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
     def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
-        begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, g)}
-        orbit = rollout(discretize(system, time_step), **begin, steps=len(next(iter(kinds.values()))) - 1)
+        steps = len(next(iter(kinds.values()))) - 1
+        orbit = rollout(discretize(system, time_step), **_first_state(system, start, g), steps=steps)
 
         def velocity() -> Array:
             inertia = jnp.asarray(system.constrained_inertia)
@@ -96,19 +115,6 @@ def _with_slopes(one: Callable[..., Any], argnums: tuple[int, int]) -> Callable[
         return {kind: (rows[kind], *slopes[kind]) for kind in rows}  # JAX sorts a dictionary: only names are kept
 
     return jax.jit(by_kind)
-
-
-def _in_few_lengths(run: Callable[..., Any], system: Any, *arguments: Any) -> Any:
-    """Return what compiled rows are, of trials that run on through nodes at which nothing is measured.
-
-    So few numbers of steps are compiled. A table of forces, which may end with the record, has its own number.
-    """
-    *others, kinds = arguments
-    nodes = next(iter(kinds.values())).shape[1]
-    room = nodes if getattr(system, "table", None) is not None else rows_above(nodes)
-    more = (0, 0), (0, room - nodes), (0, 0)
-    parts = in_double(run, *others, {k: np.pad(x, more, constant_values=np.nan) for k, x in kinds.items()})
-    return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
 
 
 def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Callable[[], Array]) -> Array:
@@ -134,121 +140,25 @@ _CORRECTIONS = 12  # of a first configuration, to holonomic constraints
 _SAMPLES = 3  # states at which coordinates that the equations do not contain are looked for
 
 
-class CoordinateReadings(NamedTuple):
-    """Measurements of motions in coordinates: positions, and each other coordinate by itself.
-
-    Attributes:
-        system: The system of the guess.
-    """
-
-    system: Any
-
-    @property
-    def names(self) -> Names:
-        """The names of columns by kind."""
-        own = self.system.coordinates
-        place = tuple(name for name in "xyz" if name in own) if {"x", "y"} <= set(own) else ()
-        kinds: Names = {"position": (place,)} if place else {}
-        for name in (name for name in own if name not in place):
-            kinds[name] = ((name,), ("heading",)) if name == self.system.heading else ((name,),)
-        return kinds
-
-    def columns(self, kind: str) -> list[int]:
-        """Return the coordinates of a kind."""
-        return [self.system.coordinates.index(name) for name in self.names[kind][0]]
-
-    def first(
-        self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
-    ) -> tuple[np.ndarray, np.ndarray, list[int]]:
-        """Return a first configuration and rates, from straight lines between nodes, and of what these are."""
-        system, heading = self.system, self.system.heading
-        series = {
-            kind: measured_rows(kind, rows, is_robust, is_angle=kind == heading)
-            for kind, rows in kinds.items()
-            if np.isfinite(rows).any()
-        }
-        ends = ends_of(series)
-        if heading and "position" in series and heading not in series:
-            series[heading] = np.array(ends), _course(ends, *series["position"])
-        at = [i for kind in series for i in self.columns(kind)]
-        both = np.concatenate([at_nodes(ends, *rows) for rows in series.values()], axis=1)
-        rates = (both[1] - both[0]) / ((ends[1] - ends[0]) * h)
-        q = np.zeros(system.dimension)
-        q[at] = both[0] - rates * ends[0] * h
-        for index, motion in system.plain.prescribed:
-            q[index] = float(motion(np.float64(0.0)))
-        if system.holonomic is not None:
-            q = checked_state(system, q, {"body_velocity": 0 * q}, 0.0, "fit", project=True)[0][: len(q)]
-        return q, rates, at
-
-    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
-        """Return measured minus computed numbers, zero where nothing was measured; of a heading less full turns."""
-        del system
-        there = jnp.isfinite(values)
-        gap = jnp.where(there, values, 0.0) - states.configuration[:, np.array(self.columns(kind))]
-        return jnp.where(there, jnp.arctan2(jnp.sin(gap), jnp.cos(gap)) if kind == self.system.heading else gap, 0.0)
-
-
-class PoseReadings(NamedTuple):
-    """Measurements of motions of a system by functions on a group: those of bodies on groups.
-
-    Attributes:
-        system: The system of the guess.
-    """
-
-    system: Any
-
-    @property
-    def names(self) -> Names:
-        """The names of columns by kind."""
-        return names_of(self.system.group)
-
-    def first(
-        self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
-    ) -> tuple[np.ndarray, np.ndarray, list[int]]:
-        """Return a first pose and body velocities, and of which directions these are."""
-        group = self.system.group
-        if not np.isfinite(kinds["turn"]).any():
-            raise error(WHERE, "have turns where the constraint depends on the pose", "none", "Measure turns.")
-        g, motion = first(group, np.eye(group.dim), h, kinds, is_robust=is_robust)
-        count = len(motion) - group.dim  # of turns, which come first, and of positions where there are any
-        return g, motion[:count], list(range(count))
-
-    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
-        """Return measured minus computed numbers, zero where nothing was measured."""
-        velocity = jax.vmap(functools.partial(equations.inverse_legendre, system.plain))
-        return _gap(system.group, kind, values, states, lambda: velocity(states.configuration, states.momentum))
-
-
-class CoordinateModel(NamedTuple):
-    """Motions of a system by functions: where they begin.
+class AbstractFunctionModel(AbstractModel):
+    """Motions of a system by functions.
 
     A start is the momentum along admissible directions at the first state, and by what the first configuration is
     another one, along holonomic constraints. A pose has beside the latter both, and ways back to these.
-
-    Attributes:
-        system: The system of the guess.
-        readings: Its measurements.
-        maker: What makes the system, as JAX traces it.
     """
 
-    system: Any
-    readings: Any
-    maker: Any = None
-
-    @property
-    def names(self) -> Names:
-        """The names of columns by kind."""
-        return self.readings.names
+    @abc.abstractmethod
+    def begin(self, h: float, kinds: Trial, *, is_robust: bool) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Return a first configuration or pose, rates, and the coordinates or directions of which these are."""
 
     def each(self, count: int) -> float:
         """Return the bytes of a node under a number of parameters."""
         n = self.system.dimension
         return 8.0 * 8.0 * (1 + count + 2 * n) * 3 * n
 
-    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+    def first(self, h: float, kinds: Trial, *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
         """Return a first pose and a first start."""
-        system, (q, rates, at) = self.system, self.readings.first(h, kinds, is_robust=is_robust)
+        system, (q, rates, at) = self.system, self.begin(h, kinds, is_robust=is_robust)
         x, still = place(system, q, 0.0), np.zeros(system.dimension)
         A, b = of_system(equations.forms, system, x), -of_system(equations.constraint, system, x, still)
         basis, v = np.linalg.svd(A)[2][len(A) :].T, np.linalg.pinv(A) @ b
@@ -272,12 +182,9 @@ class CoordinateModel(NamedTuple):
         driven = {index for index, _ in self.system.prescribed}
         return [i for i in range(n) if (i in at or matters[i]) and i not in driven]
 
-    def residuals(
-        self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
-    ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
-        run = _compile_in_coordinates(self, system_of, shapes, time_step)
-        return _in_few_lengths(run, self.system, numbers, starts, *data)
+    def program(self, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> tuple[Any, ...]:
+        """Return compiled residuals of trials by kind with derivatives."""
+        return (_compile_in_coordinates(self, system_of, shapes, time_step),)
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Any:
         """Return the motion of a trial."""
@@ -285,11 +192,70 @@ class CoordinateModel(NamedTuple):
         return simulate(discretize(system, h), momentum=p, configuration=q, steps=steps)
 
 
-def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return headings at two nodes of what moves forward, from the chords after them."""
-    chords = np.diff(at_nodes((*ends, 2 * ends[1] - ends[0]), nodes, rows), axis=0)
-    first, later = np.unwrap(np.arctan2(chords[:, 1], chords[:, 0]))
-    return np.array([[1.5 * first - 0.5 * later], [0.5 * (first + later)]])
+class CoordinateModel(AbstractFunctionModel):
+    """Motions in coordinates, of which positions are measured, and each other coordinate by itself."""
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind."""
+        own = self.system.coordinates
+        place = tuple(name for name in "xyz" if name in own) if {"x", "y"} <= set(own) else ()
+        kinds: Names = {"position": (place,)} if place else {}
+        for name in (name for name in own if name not in place):
+            kinds[name] = ((name,), ("heading",)) if name == self.system.heading else ((name,),)
+        return kinds
+
+    def columns(self, kind: str) -> list[int]:
+        """Return the coordinates of a kind."""
+        return [self.system.coordinates.index(name) for name in self.names[kind][0]]
+
+    def begin(self, h: float, kinds: Trial, *, is_robust: bool) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Return a first configuration and rates, from straight lines between nodes, and of what these are."""
+        system, heading = self.system, self.system.heading
+        series = {
+            kind: _measurements.measured_rows(kind, rows, is_robust, is_angle=kind == heading)
+            for kind, rows in kinds.items()
+            if np.isfinite(rows).any()
+        }
+        ends = _measurements.ends_of(series)
+        if heading and "position" in series and heading not in series:
+            x, y = _measurements.chords_of(ends, *series["position"]).T
+            early, late = np.unwrap(np.arctan2(y, x))  # in the middle of the chords
+            series[heading] = np.array(ends), np.array([[1.5 * early - 0.5 * late], [0.5 * (early + late)]])
+        at = [i for kind in series for i in self.columns(kind)]
+        both = np.concatenate([_measurements.at_nodes(ends, *rows) for rows in series.values()], axis=1)
+        rates = (both[1] - both[0]) / ((ends[1] - ends[0]) * h)
+        q = np.zeros(system.dimension)
+        q[at] = both[0] - rates * ends[0] * h
+        for index, motion in system.plain.prescribed:
+            q[index] = float(motion(np.float64(0.0)))
+        if system.holonomic is not None:
+            q = checked_state(system, q, {"body_velocity": 0 * q}, 0.0, "fit", project=True)[0][: len(q)]
+        return q, rates, at
+
+    def gap(self, kind: str, values: Array, _system: Any, states: Any) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured; of a heading less full turns."""
+        there = jnp.isfinite(values)
+        gap = jnp.where(there, values, 0.0) - states.configuration[:, np.array(self.columns(kind))]
+        return jnp.where(there, jnp.arctan2(jnp.sin(gap), jnp.cos(gap)) if kind == self.system.heading else gap, 0.0)
+
+
+class PoseModel(AbstractFunctionModel):
+    """Motions of a system by functions on a group, of which that is measured which is of bodies on groups."""
+
+    def begin(self, h: float, kinds: Trial, *, is_robust: bool) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Return a first pose and body velocities, and of which directions these are."""
+        group = self.system.group
+        if not np.isfinite(kinds["turn"]).any():
+            raise error(WHERE, "have turns where the constraint depends on the pose", "none", "Measure turns.")
+        g, motion = first(group, np.eye(group.dim), h, kinds, is_robust=is_robust)
+        count = len(motion) - group.dim  # of turns, which come first, and of positions where there are any
+        return g, motion[:count], list(range(count))
+
+    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured."""
+        velocity = jax.vmap(functools.partial(equations.inverse_legendre, system.plain))
+        return _gap(system.group, kind, values, states, lambda: velocity(states.configuration, states.momentum))
 
 
 def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:
@@ -322,15 +288,13 @@ def _slopes(system: Any, place: Array, xis: Array, vs: Array, h: Array) -> Array
 
 
 @functools.lru_cache(maxsize=8)
-def _compile_in_coordinates(
-    model: CoordinateModel, system_of: Callable[..., Any], shapes: Shapes, time_step: float
-) -> Callable[..., Any]:
+def _compile_in_coordinates(model: Any, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> Any:
     def one(numbers: Array, start: Array, pose: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
         q, p = _begin(system.plain, start, pose)
         steps = len(next(iter(kinds.values()))) - 1
         states = rollout(discretize(system, time_step), momentum=p, configuration=q, steps=steps)
-        rows = {kind: model.readings.gap(kind, values, system, states) for kind, values in kinds.items()}
+        rows = {kind: model.gap(kind, values, system, states) for kind, values in kinds.items()}
         return rows, rows
 
     return _with_slopes(one, (0, 1))
@@ -356,9 +320,15 @@ def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
     return structure, tuple(functions), program
 
 
-def coordinate_model(system: Any, again: Any) -> CoordinateModel:
-    """Return the model of a system that a function made twice; refused if it does not vary parameters alone."""
-    if not (system.parameters and system.family == again.family):
+def model_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> GroupModel | AbstractFunctionModel:
+    """Return the motions of the system of a guess; refused if they do not vary its parameters alone."""
+    where, system = "fit(system_of=...)", system_of(by_name(shapes, numbers))
+    if not isinstance(system, AbstractCoordinateSystem):
+        remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
+        refuse_fixed_in_space(where, system, remedy, shown(system))
+        return GroupModel(system, maker_of(system_of, shapes, numbers))
+    if not (system.parameters and system.family == system_of(by_name(shapes, numbers)).family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
-        raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system))
+        raise error(where, "vary the parameters of one system", type(system).__name__, remedy)
+    kind = CoordinateModel if getattr(system, "coordinates", ()) else PoseModel
+    return kind(system, maker_of(system_of, shapes, numbers))

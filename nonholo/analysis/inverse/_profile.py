@@ -155,9 +155,7 @@ class _Search(NamedTuple):
         point = min(starts, key=lambda x: float(np.sum(minimum.rows(x) ** 2)))
 
         def whole(x: np.ndarray) -> np.ndarray:
-            full = np.full(len(point), value)
-            full[others] = x
-            return full
+            return np.insert(x, at, value)
 
         functions = (lambda x: minimum.rows(whole(x))), (lambda x: minimum.slope(whole(x))[:, others])
         point = whole(least_squares_at(point[others], *functions, 1e-10, _ROUNDS))

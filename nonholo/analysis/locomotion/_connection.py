@@ -214,8 +214,8 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     shape = tuple(i for i, name in enumerate(names) if name not in pose)
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
-    x, y, theta = (names.index(name) for name in pose)
-    return _connection(door().Planar(free, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+    reduction = door().Planar(free, tuple(map(names.index, pose)), shape)
+    return _connection(reduction, system, tuple(names[i] for i in shape))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:
@@ -234,7 +234,7 @@ def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalCon
 
 def _units(reduction: Any, shapes: Array) -> Float[np.ndarray, "d+m"]:
     r"""Return units of $(\xi, \dot s)$ in which each has the same kinetic energy; without a Lagrangian 1."""
-    if reduction.has_energy:
+    if reduction.system.lagrangian is not None:
         sizes = np.diagonal(door().call(door().inertia_terms, reduction, shapes)[0], axis1=-2, axis2=-1)
         sizes = np.abs(sizes[np.isfinite(sizes).all(axis=1)]).max(axis=0, initial=0.0)
         return 1 / np.sqrt(np.where(sizes > 0, sizes, 1.0))

@@ -30,8 +30,6 @@ def terms(free: tuple[int, ...], units: Array, W: Array, dW: Array, M: Array, dM
     k, d = len(free), len(free) + W.shape[-2]
     units = np.broadcast_to(units, (*W.shape[:-2], d))
     E, dE = np.zeros((*W.shape[:-2], d, k)), np.zeros((*W.shape[:-2], d, k, dW.shape[-1]))
-    if not k:
-        return Terms(W, dW, E, dE, M, units)
     pivots, B, dB = np.setdiff1d(np.arange(d), free), W[..., :d], dW[..., :d, :]
     E[..., list(free), :] = np.eye(k)
     own = units[..., pivots]

@@ -117,7 +117,10 @@ def geometric_phase(
 def _displacement(
     connection: LocalConnection, shape_at: Any, edges: Array, p: Array
 ) -> tuple[GeometricPhase, Float[np.ndarray, "p"]]:
-    """Return the phase by polynomials of degree 20 in the time between edges, and the sizes of its momenta."""
+    """Return the phase by polynomials of degree 20 in the time between edges, and the sizes of its momenta.
+
+    These are alike in units of the body: where momenta cancel, those of their part by the shape.
+    """
     h = np.diff(edges)
     time = edges[:-1, None] + h[:, None] * _NODES
     s, ds = shape_at(time[..., None])
@@ -140,7 +143,10 @@ def _displacement(
     times = np.concatenate([edges[:1], time.ravel(), edges[-1:]])
     columns = heading, whole(p, momentum, p_end), holonomy, group.exp(area)
     phase = GeometricPhase(connection, times, whole(first, s, last), g, *columns)
-    return phase, _momentum_sizes(connection, at, ds, phase.momentum)
+    of_shape = np.einsum("tkai,tki->tka", at.matrix[..., : len(p), group.dim :], ds)
+    units = at.units[0, 0, [connection.components.index(name) for name in connection.momentum_components]]
+    largest = (np.abs(part * units).max(initial=0.0) for part in (phase.momentum, of_shape))
+    return phase, (max(largest) or 1.0) / units
 
 
 def _poses(
@@ -190,16 +196,6 @@ def _distances(one: GeometricPhase, other: GeometricPhase, sizes: Float[np.ndarr
     pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
     gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
-
-
-def _momentum_sizes(
-    connection: LocalConnection, at: _equations.Terms, ds: Array, momentum: Float[np.ndarray, "T p"]
-) -> Float[np.ndarray, "p"]:
-    """Return the size of momenta, alike in units of the body: that of their part by the shape where they cancel."""
-    of_shape = np.einsum("tkai,tki->tka", at.matrix[..., : momentum.shape[1], connection.group.dim :], ds)
-    units = at.units[0, 0, [connection.components.index(name) for name in connection.momentum_components]]
-    largest = (np.abs(part * units).max(initial=0.0) for part in (momentum, of_shape))
-    return (max(largest) or 1.0) / units
 
 
 def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:

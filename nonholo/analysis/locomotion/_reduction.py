@@ -12,7 +12,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -21,6 +21,7 @@ from scipy.linalg import qr
 
 from nonholo.analysis.locomotion._equations import unit_rows
 from nonholo.base.numerics import double_precision
+from nonholo.base.traced import call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.lagrange_dalembert import checked_rows, checked_value, equations
@@ -44,7 +45,6 @@ class Planar:
     pose: tuple[int, int, int]
     shape: tuple[int, ...]
     group: ClassVar[AbstractMatrixGroup] = SE(2)
-    has_energy: ClassVar[bool] = True
 
     def rows(self, pose: Array, s: Array) -> Array:
         """Return the constraints at a pose (x, y, theta) as rows W = (B, C)."""
@@ -60,22 +60,17 @@ class Planar:
 class Reduced:
     """A `ShapedBody`, for which all poses are alike."""
 
-    body: Any
+    system: Any
 
     @property
     def group(self) -> AbstractMatrixGroup:
         """The group."""
-        return self.body.group
-
-    @property
-    def has_energy(self) -> bool:
-        """Whether it has a Lagrangian."""
-        return self.body.lagrangian is not None
+        return self.system.group
 
     def rows(self, _pose: Array, s: Array) -> Array:
         """Return the constraints as rows W = (B, C)."""
         n = self.group.dim + len(s)
-        forms = self.body.constraint_forms
+        forms = self.system.constraint_forms
         return jnp.zeros((0, n)) if forms is None else jnp.asarray(forms(s), float)
 
     def constraint_forms(self, q: Array) -> Array:
@@ -93,24 +88,18 @@ class Reduced:
 
     def lagrangian(self, _pose: Array, s: Array, u: Array) -> Array:
         r"""Return the Lagrangian of u = $(\xi, \dot s)$."""
-        return jnp.asarray(self.body.lagrangian(s, *jnp.split(u, [self.group.dim])), float)
-
-
-Reduction: TypeAlias = Planar | Reduced
+        return jnp.asarray(self.system.lagrangian(s, *jnp.split(u, [self.group.dim])), float)
 
 
 def call(function: Callable[..., Any], reduction: Any, *points: Array) -> Any:
     """Return the values of a function at points, whose leading axes are free, as NumPy arrays in 64 bits."""
     leading = np.broadcast_shapes(*(point.shape[:-1] for point in points))
-    count = int(np.prod(leading))
-    flat = [np.broadcast_to(p, (*leading, p.shape[-1])).reshape(count, p.shape[-1]) for p in points]
-    blocks = max(1, -(-count // _BLOCK))
-    whole = [np.concatenate([p, np.zeros((blocks * _BLOCK - count, p.shape[1]))]) for p in flat]
+    flat = [np.broadcast_to(p, (*leading, p.shape[-1])).reshape(math.prod(leading), p.shape[-1]) for p in points]
     run = _compile(function, reduction)
     with double_precision():
-        parts = zip(*(np.split(p, blocks) for p in whole), strict=True)
-        values = [jax.tree.map(np.asarray, run(*part)) for part in parts]
-    return jax.tree.map(lambda *x: np.concatenate(x)[:count].reshape((*leading, *x[0].shape[1:])), *values)
+        columns = call_in_blocks(lambda *rows: jax.tree.leaves(run(*rows)), _BLOCK, *flat)
+    values = [column.reshape(*leading, *column.shape[1:]) for column in columns]
+    return values if len(values) > 1 else values[0]
 
 
 @functools.cache
@@ -127,18 +116,18 @@ def _velocities(r: Planar, pose: Array, u: Array) -> Array:
     return _coordinates(r, jnp.stack([cos * u[1] - sin * u[2], sin * u[1] + cos * u[2], u[0]]), u[3:])
 
 
-def momenta(r: Reduction, s: Array, u: Array) -> Array:
+def momenta(r: Planar | Reduced, s: Array, u: Array) -> Array:
     """Return the derivative of the Lagrangian by u."""
     return jax.grad(r.lagrangian, 2)(_HERE, s, u)
 
 
-def constraint_terms(r: Reduction, s: Array) -> tuple[Array, Array]:
+def constraint_terms(r: Planar | Reduced, s: Array) -> tuple[Array, Array]:
     """Return W and its derivatives by the shape, whose axis is the last."""
     at_identity = functools.partial(r.rows, _HERE)
     return at_identity(s), jax.jacfwd(at_identity)(s)
 
 
-def inertia_terms(r: Reduction, s: Array) -> tuple[Array, Array]:
+def inertia_terms(r: Planar | Reduced, s: Array) -> tuple[Array, Array]:
     """Return the inertia M of a quadratic Lagrangian and its derivatives by the shape."""
 
     def inertia(s: Array) -> Array:  # momenta are linear

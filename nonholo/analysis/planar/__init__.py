@@ -16,8 +16,6 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 
-_REMEDY = "Use the defaults of `discretize`."
-
 PlanarVariety: TypeAlias = Disc | Strip
 """The displacements of either body; both answer the same questions."""
 
@@ -33,8 +31,7 @@ def planar_variety(system: AbstractSystem) -> PlanarVariety | None:
 
 def blade_axes(system: AbstractSystem) -> Float[np.ndarray, "3 3"] | None:
     """Return the axes of the blade of a sleigh in the plane, at its contact point; None for other systems."""
-    variety = planar_variety(system)
-    return None if variety is None else variety.blade
+    return getattr(planar_variety(system), "blade", None)
 
 
 def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
@@ -44,14 +41,15 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
     if variety is None:
         remedy = "For others sample `discrete_legendre`."
         raise error(where, "be of a top with n = 3 or of a sleigh in the plane", shown(discrete.system), remedy)
-    check_conserves_energy(where, discrete, "keep energy", "Use difference='matrix' and constraint='skew'.")
+    check_conserves_energy(where, discrete, "keep energy")
     return discrete, variety
 
 
-def check_conserves_energy(where: str, discrete: Discretization, demand: str, remedy: str = _REMEDY) -> None:
+def check_conserves_energy(where: str, discrete: Discretization, demand: str) -> None:
     """Refuse a map whose energy drifts, in the words of the caller."""
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
+        remedy = "Use the defaults of `discretize`, difference='matrix' and constraint='skew'."
         raise error(where, demand, got, remedy)
 
 

@@ -9,7 +9,9 @@ $$ \tfrac h2 (P_{13}, P_{23}, P_{12}) = (z^T Q_1 z, z^T Q_2 z, z^T Q_3 z), \qqua
 The symmetric matrices S with $\mathrm{tr}\,S = \mathrm{tr}\,Q_iS = 0$ form a pencil $\langle S_1, S_2\rangle$; all
 geometry of the surface is in it. Matrices here are sizes of one: momenta are divided by the size of the body.
 
-Energy levels on the projective plane of displacements of a top, in polar coordinates.
+Energy levels on the projective plane of displacements of a top, in polar coordinates, are arcs over intervals of
+directions, the two solutions of a quadratic, joined where they meet: an arc ends in a fold, where it continues as the
+other solution, or on the equator, where its mirror image begins.
 
 With $z = \sqrt\rho\,u(\varphi)$, $b = u\cdot Bu$, $\sigma = c\cdot u^\perp$ and $\kappa = 1 - \sigma^2/D$ the level is
 $b(\rho - \kappa\rho^2) = e$, $e = h^2E/2$, on $0 \le \rho \le 1$.
@@ -20,8 +22,41 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, PlanarBody, closed_curves
+from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, PlanarBody
 from nonholo.base.types import Array, Float
+
+_SAME_MIDDLE = 1e-8  # angle below which two middles of arcs are one
+
+
+class Place(NamedTuple):
+    """An arc on one side of the equator, 1 or -1, and the sense in which it is run through."""
+
+    arc: Arc
+    side: int
+    sense: int
+
+    def following(self, arcs: list[Arc]) -> "Place":
+        """Return what continues the curve: the sense is reversed at every end."""
+        arc = self.arc
+        if not arc.ends:
+            return self
+        end, direction = (arc.ends[1], arc.stop) if self.sense > 0 else (arc.ends[0], arc.start)
+        if end == EQUATOR:
+            return Place(arc, -self.side, -self.sense)
+        others = [a for a in arcs if a.sign == -arc.sign and a.ends]
+        other = min(others, key=lambda a: _apart(direction, a.stop if self.sense > 0 else a.start), default=arc)
+        return Place(other, self.side, -self.sense)
+
+    def is_same(self, other: "Place") -> bool:
+        """Return whether both are the same displacements, full turns and the sense apart: one arc, or its antipode."""
+        arc, that, turn = self.arc, other.arc, 0.0 if self.side == other.side else np.pi
+        middles = (arc.start + arc.stop) / 2, (that.start + that.stop) / 2 + turn
+        return arc.sign == that.sign and (not arc.ends or _apart(*middles) < _SAME_MIDDLE)
+
+
+def _apart(x: float, y: float) -> float:
+    """Return the angle between two directions."""
+    return abs((x - y + np.pi) % (2 * np.pi) - np.pi)
 
 
 class DiscLevel(NamedTuple):
@@ -38,13 +73,31 @@ class DiscLevel(NamedTuple):
         return np.concatenate([np.empty((0, 3)), *points])
 
     def components(self, count: int) -> tuple[Float[np.ndarray, "K 3"], ...]:
-        """Return the connected curves, lifted to the sphere."""
+        """Return the connected curves, lifted to the sphere, one of each antipodal pair.
+
+        Arcs beyond the first half turn are copies of the others.
+        """
         arcs = [arc for sign in (-1, 1) for arc in self._arcs(sign)]
-        return closed_curves(arcs, lambda arc, directions, side: self._points(arc.sign, directions, side), count)
+        curves, past = [], []
+        for arc in arcs:
+            place, pieces = Place(arc, 1, 1), []
+            while not any(place.is_same(other) for other in past):
+                pieces.append(place)
+                past.append(place)
+                place = place.following(arcs)
+            if pieces:
+                curves.append(self._chain(pieces, count))
+        return tuple(curves)
+
+    def _chain(self, pieces: list[Place], count: int) -> Float[np.ndarray, "K 3"]:
+        runs = [self._points(arc.sign, arc.directions(count), side)[::sense] for arc, side, sense in pieces]
+        curve = np.concatenate([runs[0], *(run[1:] for run in runs[1:])])
+        curve[-1] = curve[0]  # equal but for the square root of rounding
+        return curve
 
     def _arcs(self, sign: int) -> list[Arc]:
         breaks = [(angle, FOLD) for angle in self._folds()]
-        breaks += [(angle, EQUATOR) for angle in self._crossings() if self._reaches(angle) == sign]
+        breaks += [(angle, EQUATOR) for angle in self._crossings(sign)]
         if not breaks:
             whole = all(self._valid(sign, angle) for angle in (0.0, 1.0, 2.0, 3.0))
             return [Arc(sign, 0.0, 2 * np.pi)] if whole else []
@@ -79,10 +132,6 @@ class DiscLevel(NamedTuple):
         _, b, kappa = self._shape(np.array(angle))
         return bool(b >= 4 * kappa * self.e and self._size(sign, np.array([angle]))[0] <= 1)
 
-    def _reaches(self, angle: float) -> int:
-        """Return which solution is 1 in a direction where one of them is."""
-        return 1 if self._shape(np.array(angle))[2] >= 0.5 else -1
-
     def _folds(self) -> list[float]:
         """Return the directions, modulo pi, where b = 4 kappa e: the zeros of a quadratic form."""
         n = self._normal
@@ -94,14 +143,15 @@ class DiscLevel(NamedTuple):
         zeros = (vectors @ [np.cos(half), side * np.sin(half)] for side in (1, -1))
         return [float(np.arctan2(v[1], v[0]) % np.pi) for v in zeros]
 
-    def _crossings(self) -> list[float]:
-        r"""Return the directions, modulo pi, where $b\sigma^2 = De$: a quartic in the tangent."""
+    def _crossings(self, sign: int) -> list[float]:
+        r"""Return the directions, modulo pi, where one solution is 1, $b\sigma^2 = De$, a quartic in the tangent."""
         (b11, b12), (_, b22) = self.B
         n1, n2 = self._normal
         product = np.convolve([b22, 2 * b12, b11], [n2 * n2, 2 * n1 * n2, n1 * n1])
         quartic = product - np.linalg.det(self.B) * self.e * np.array([1.0, 0.0, 2.0, 0.0, 1.0])
         roots = np.roots(quartic)
-        return [float(np.arctan(t.real) % np.pi) for t in roots if abs(t.imag) <= 1e-9 * (1 + abs(t))]
+        angles = [float(np.arctan(t.real) % np.pi) for t in roots if abs(t.imag) <= 1e-9 * (1 + abs(t))]
+        return [angle for angle in angles if (self._shape(np.array(angle))[2] >= 0.5) == (sign > 0)]
 
 
 _FLAT = 1e-10  # singular value of the four forms below which they are dependent
@@ -141,7 +191,8 @@ class SteinerSurface(NamedTuple):
             return four @ np.linalg.svd(_four(self.forms))[0][:, -1]
         X = _matrix(four @ np.linalg.pinv(_four(self.forms)).T)
         first, second = self.pencil
-        free = self._without_squares()
+        squares = [_bilinear(first, first) / 2, _bilinear(first, second), _bilinear(second, second) / 2]
+        free = np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
         columns = [_bilinear(X, X) / 2, _bilinear(X, first), _bilinear(X, second)]
         return np.linalg.det(np.stack([_vector(column) @ free.T for column in columns], axis=-1))
 
@@ -153,10 +204,8 @@ class SteinerSurface(NamedTuple):
         """
         if self.is_flat:
             return np.empty((0, 2, 3))
-        ends = []
-        for u, v in self._pairs():
-            center, half = ((u @ self.forms) @ w for w in (u, v))
-            ends.append([center - half, center + half])
+        segments = [((u @ self.forms) @ u, (u @ self.forms) @ v) for u, v in self._pairs()]
+        ends = [[center - half, center + half] for center, half in segments]
         return np.array(ends).reshape(-1, 2, 3) @ np.linalg.inv(self.to_forms).T
 
     def triple_point(self) -> Float[np.ndarray, "3"] | None:
@@ -164,24 +213,13 @@ class SteinerSurface(NamedTuple):
         pairs = self._pairs()
         if self.is_flat or len(pairs) < 3:
             return None
-        normals = [np.cross(u, v) for u, v in pairs[:2]]
-        common = np.cross(normals[0], normals[1])
+        common = np.cross(np.cross(*pairs[0]), np.cross(*pairs[1]))  # of their normals
         common /= np.linalg.norm(common)
         return np.linalg.inv(self.to_forms) @ ((common @ self.forms) @ common)
 
     def _pairs(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return the vectors u and v of the singular matrices of the pencil."""
         return [(vectors[:, 2], vectors[:, 0]) for _, vectors in map(np.linalg.eigh, _singular(self.pencil))]
-
-    def _without_squares(self) -> Float[np.ndarray, "3 6"]:
-        first, second = self.pencil
-        squares = [_bilinear(first, first) / 2, _bilinear(first, second), _bilinear(second, second) / 2]
-        return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
-
-
-def _pencil(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "m 3 3"]:
-    _, values, rows = np.linalg.svd(_four(forms))
-    return _matrix(rows[np.count_nonzero(values > _FLAT) :])
 
 
 def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
@@ -306,7 +344,9 @@ class Disc(PlanarBody):
         forms = np.array([first, second, third])
         size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
         axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ self.frame.T
-        return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))
+        _, values, rows = np.linalg.svd(_four(forms / (2 * size)))
+        pencil = _matrix(rows[np.count_nonzero(values > _FLAT) :])
+        return SteinerSurface(forms / (2 * size), pencil, axes * time_step / (2 * size))
 
 
 def _quarter_turned(z: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:

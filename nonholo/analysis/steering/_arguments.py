@@ -6,7 +6,8 @@ from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 
-from nonholo.base.checks import array, error, is_integer, pair, shape_of, shown
+from nonholo.base.checks import array, error, is_integer, pair, real_or_complex, shape_of, shown
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 from nonholo.systems import Start, System, direction_lengths, in_group, one_start
@@ -19,19 +20,18 @@ Limits = tuple[np.ndarray, np.ndarray]
 
 
 class Guess(NamedTuple):
-    """Where IPOPT begins: a motion with its body covectors, or a path of positions; None of what is not there."""
+    """Where IPOPT begins: a motion, configurations and body covectors, or a path of positions; None if not there."""
 
-    configuration: Float[np.ndarray, "K ..."] | None = None
-    controls: Float[np.ndarray, "steps dim"] | None = None
+    motion: tuple[Float[np.ndarray, "K ..."], Float[np.ndarray, "steps dim"]] | None = None
     path: Float[np.ndarray, "P n"] | None = None
 
     @property
     def trust(self) -> float:
         """The part of random changes that it is given."""
-        return 1.0 if self.configuration is None and self.path is None else 0.1
+        return 1.0 if self.motion is None and self.path is None else 0.1
 
 
-def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
+def _checked_guess(guess: Any, steps: int, n: int) -> Guess:
     """Return a guess: a `Steering` of one member with as many steps, or positions of n numbers."""
     where, remedy = "steer(guess=...)", "Pass the result of `steer` for one member, or two positions or more."
     if guess is None:
@@ -40,8 +40,8 @@ def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
     if controls is not None:
         if controls.ndim != 2 or len(controls) != steps:
             raise error(where, f"be of one member and {steps} steps", f"controls of shape {controls.shape}", remedy)
-        return Guess(np.asarray(guess.orbit.configuration), controls)
-    if n is None:
+        return Guess((np.asarray(guess.orbit.configuration), controls))
+    if not n:
         raise error(where, "be the result of `steer` for a system without a position", shown(guess), remedy)
     path = array(where, guess, (None, n), remedy)
     if len(path) < 2:
@@ -197,12 +197,10 @@ class StateBounds(NamedTuple):
 def _limit(where: str, value: Any, count: int) -> np.ndarray:
     """Return the least or largest value of each row; infinite ones, which bound nothing, are allowed."""
     remedy = "Pass the least and the largest value, numbers or one for each row; infinity for none."
-    try:
-        infinite = np.where(np.isinf(value), value, 0.0)
-    except (TypeError, ValueError):
-        infinite = np.zeros(())
-    finite = np.where(infinite, 0.0, value) if infinite.any() else value
-    return array(where, finite, (count,) if np.ndim(finite) else (), remedy) + infinite + np.zeros(count)
+    raw = real_or_complex(where, value, remedy)
+    infinite = np.where(np.isinf(raw), raw, 0.0)
+    finite = np.where(infinite, 0.0, raw)
+    return array(where, finite, (count,) if raw.ndim else (), remedy) + infinite + np.zeros(count)
 
 
 def state_units(system: System, duration: float) -> tuple[Float[np.ndarray, "dim"], Float[np.ndarray, "k"]]:
@@ -221,9 +219,8 @@ def body_numbers(system: System, duration: float) -> dict[str, Rows]:
 
 def _pose_numbers(group: Any, rows: Float[np.ndarray, "NN x"], length: float) -> dict[str, Rows]:
     """Return rows by name from those for the entries of a pose."""
-    entries, names = rows.reshape(group.size, group.size, -1), {}
-    if group.is_affine:
-        names = {name: (entries[i, -1:], length) for i, name in zip(range(group.size - 1), "xyz", strict=False)}
+    entries, axes = rows.reshape(group.size, group.size, -1), "xyz"[: group.size - 1] if group.is_affine else ""
+    names = {name: (entries[i, -1:], length) for i, name in enumerate(axes)}
     return names | ({"theta": (entries[:1, 0] + 1j * entries[1:2, 0], 1.0)} if group == SE(2) else {})
 
 
@@ -251,18 +248,12 @@ def coordinate_numbers(system: Any, sizes: Float[np.ndarray, "n"], duration: flo
     return velocity | {name: (unit[n + i, None], sizes[i]) for i, name in enumerate(system.coordinates)}
 
 
-def size_of_positions(system: Any) -> int | None:
-    """Return how many numbers a position has; None where bodies have none."""
-    if getattr(system, "coordinates", ()):
-        return 2 if {"x", "y"} <= set(system.coordinates) else None
-    return system.group.size - 1 if system.group.is_affine else None
-
-
 def numbers_of_position(system: Any) -> list[int]:
-    """Return which numbers of a configuration are its position."""
-    if system.coordinates:
-        return list(map(system.coordinates.index, "xy")) if size_of_positions(system) else []
-    return list(range(system.group.size - 1, system.group.size**2 - 1, system.group.size))
+    """Return which numbers of a configuration are its position; none where bodies have none."""
+    if names := getattr(system, "coordinates", ()):
+        return list(map(names.index, "xy")) if {"x", "y"} <= set(names) else []
+    size = system.group.size
+    return list(range(size - 1, size**2 - 1, size)) if system.group.is_affine else []
 
 
 class Way(NamedTuple):
@@ -287,9 +278,9 @@ class Way(NamedTuple):
     @classmethod
     def of(cls, system: Any, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
         """Return checked arguments of `steer` for a system."""
-        n = size_of_positions(system)
+        n = len(numbers_of_position(system))
         hint = _checked_guess(guess, steps, n)
-        if n is None:
+        if not n:
             if not (obstacles is None and outline is None and via is None):
                 remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y have a position."
                 raise error("steer(discrete=...)", "have a position", "a system without", remedy)
@@ -382,7 +373,7 @@ def body_points(g: Float[Array, "... N N"], outline: Float[Array, "points n"]) -
 def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array, "... points n"]:
     """Return where points of a body are at poses, or with coordinates x and y, turned by the heading if it has one.
 
-    The points are given, or a function of the configuration.
+    The points are given, or a function of the configuration that JAX traces.
     """
     if not system.coordinates:
         return body_points(q, outline)
@@ -391,5 +382,13 @@ def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array,
     turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]
     c, s = xp.cos(turn), xp.sin(turn)
     rows = xp.stack([xp.stack([c, s], axis=-1), xp.stack([-s, c], axis=-1)], axis=-2)
-    points = outline(q[..., : system.dimension]) if callable(outline) else outline
-    return xp.stack([x, y], axis=-1)[..., None, :] + points @ rows
+    return xp.stack([x, y], axis=-1)[..., None, :] + _outline_at(outline, q[..., : system.dimension]) @ rows
+
+
+def _outline_at(outline: Any, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
+    """Return points of a body with configurations; a function of NumPy's is called with each of them."""
+    if not callable(outline) or not isinstance(q, np.ndarray):
+        return outline(q) if callable(outline) else outline
+    with double_precision():
+        rows = np.array([outline(row) for row in q.reshape(-1, q.shape[-1])])
+    return rows.reshape(*q.shape[:-1], *outline.shape)

@@ -6,7 +6,6 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 
 import dataclasses
 import math
-import operator
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -19,14 +18,13 @@ from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import Limits, Way
 from nonholo.analysis.steering._shooting import driven_side_by_side, goal_gap, goal_units, sizes
 from nonholo.analysis.steering._steer import driven
-from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
+from nonholo.analysis.steering._transcription import Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
-from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, free_rows, step_residual
+from nonholo.discrete.definition import Rollout, free_rows, in_double, step_residual
 from nonholo.groups import SE
-from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, in_double, place
+from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, place
 from nonholo.simulation.traced import rollout
 from nonholo.systems import Forced
 
@@ -65,9 +63,8 @@ class GroupNodes(NamedTuple):
         """Return where the points of the outline are, (points, n)."""
         return _arguments.body_points(self.state(x)[0], self.outline)
 
-    def numbers(self, z: Array, x: Array) -> Array:
+    def numbers(self, _z: Array, x: Array) -> Array:
         """Return what bounds of states are about: entries of the pose, momenta."""
-        del z
         g, momenta = self.state(x)
         return jnp.append(g, momenta)
 
@@ -79,38 +76,14 @@ class GroupNodes(NamedTuple):
         return g, x[rows * group.size :]
 
 
-@dataclasses.dataclass(frozen=True)
-class MovingOutline:
-    """Points in axes of the body that depend on the configuration.
-
-    Attributes:
-        function: Of a configuration, as JAX traces it.
-    """
-
-    function: Any
-    shape = property(operator.attrgetter("function.shape"))
-
-    @classmethod
-    def of(cls, system: LagrangeDAlembert, function: Callable[[Array], Array]) -> "MovingOutline":
-        """Return the checked outline of a system."""
-        where, of = "steer(outline=...)", f"{system.dimension} coordinates"
-        q = jax.ShapeDtypeStruct((system.dimension,), float)
-        outline = cls(lagrange_dalembert.trace(where, function, of, (q,)))
-        if len(outline.shape) != 2 or outline.shape[1] != 2 or not outline.shape[0]:
-            remedy = "Return points in axes of the body, x ahead."
-            raise error(where, "return an array of shape (points, 2)", f"shape {outline.shape}", remedy)
-        return outline
-
-    def __len__(self) -> int:
-        return self.shape[0]
-
-    def __call__(self, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
-        """Return the points at one configuration or many."""
-        if not isinstance(q, np.ndarray):
-            return self.function(q)
-        with double_precision():
-            rows = np.array([self.function(jnp.asarray(row)) for row in q.reshape(-1, q.shape[-1])])
-        return rows.reshape(*q.shape[:-1], *self.shape)
+def moving_outline(system: LagrangeDAlembert, function: Callable[[Array], Array]) -> Any:
+    """Return the checked points in axes of the body of a configuration, as JAX traces them."""
+    where, of = "steer(outline=...)", f"{system.dimension} coordinates"
+    outline = lagrange_dalembert.trace(where, function, of, (jax.ShapeDtypeStruct((system.dimension,), float),))
+    if len(outline.shape) != 2 or outline.shape[1] != 2 or not outline.shape[0]:
+        remedy = "Return points in axes of the body, x ahead."
+        raise error(where, "return an array of shape (points, 2)", f"shape {outline.shape}", remedy)
+    return outline
 
 
 class CoordinateNodes(NamedTuple):
@@ -119,7 +92,7 @@ class CoordinateNodes(NamedTuple):
     Attributes:
         system: The system.
         time_step: h.
-        outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `MovingOutline`.
+        outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `moving_outline`.
         unit: Units of velocities in which each has the same energy.
         directions: Rows span the admissible velocities near the goal, in these; none where its velocity is free.
         velocity: The last velocity.
@@ -140,17 +113,14 @@ class CoordinateNodes(NamedTuple):
         n = self.system.dimension
         return math.prod(self.system.place_shape) + n, n + self.system.constraints, n
 
-    def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
+    def residual(self, x: Array, z: Array, f: Array, after: Array, _row: Array) -> Array:
         """Return the equations of a step; there is no table of forces."""
-        del row
         return equations.step_residual(self.system, self.state(x), z, self.state(after), f, self.time_step)
 
     def goal_gap(self, x: Array) -> Array:
         """Return by how much the last pose is missed, and the last momentum along the constraint."""
         (place, p), departure = self.state(x), self.system.places.departure
         off_pose = jnp.zeros(0) if self.pose is None else departure(self.pose, place[: len(self.pose)])
-        if not len(self.directions):
-            return off_pose
         rows = equations.forms(self.system, place) * self.unit
         off = (p - equations.momentum(self.system, place, self.velocity)) * self.unit
         along = self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
@@ -232,23 +202,8 @@ def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.
     return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
 
 
-class Extent(NamedTuple):
-    """The size of a motion in coordinates.
-
-    Attributes:
-        unit: Units of velocities in which each has the same kinetic energy.
-        far: The way in these.
-        duration: The time that it takes.
-    """
-
-    unit: Float[np.ndarray, "n"]
-    far: float
-    duration: float
-
-    @property
-    def sizes(self) -> Float[np.ndarray, "n"]:
-        """The way in each coordinate, or direction of a group."""
-        return self.far * self.unit
+Extent = tuple[Float[np.ndarray, "n"], float]
+"""Units of velocities in which each has the same kinetic energy, and the way in these."""
 
 
 def extent_of_way(discrete: Any, start: tuple[np.ndarray, np.ndarray], goal: Goal, way: Way, steps: int) -> Extent:
@@ -259,7 +214,7 @@ def extent_of_way(discrete: Any, start: tuple[np.ndarray, np.ndarray], goal: Goa
     ways = [system.places.departure(q, last) / unit, duration * v / unit]
     at = _arguments.numbers_of_position(system)
     ways += [(place - q.ravel()[at]) / _of_position(system, unit) for place in way.via.values()]
-    return Extent(unit, float(max(np.abs(each).max() for each in ways)) or 1.0, duration)
+    return unit, float(max(np.abs(each).max() for each in ways)) or 1.0
 
 
 def _of_position(system: Any, numbers: Float[np.ndarray, "n"]) -> Float[np.ndarray, "_"]:
@@ -270,12 +225,13 @@ def _of_position(system: Any, numbers: Float[np.ndarray, "n"]) -> Float[np.ndarr
 
 def coordinate_problem(
     discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way, extent: Extent
-) -> Problem:
-    """Return the problem of a system in coordinates or on a group, from place and velocity at the start and a goal."""
-    ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
+) -> tuple[Any, ...]:
+    """Return the problem for `transcribe` of a system by functions, from place and velocity at the start and a goal."""
+    ((x, v), goal), (unit, far), system, n = ends, extent, discrete.system, discrete.system.dimension
     steps, size = len(limits[0]) // n, system.shapes[0][0]
-    last = goal.end(system, x, steps * discrete.time_step)
-    nodes = _nodes(discrete, way, last, goal, extent.unit)
+    sizes, duration = far * unit, steps * float(discrete.time_step)
+    last = goal.end(system, x, duration)
+    nodes = _nodes(discrete, way, last, goal, unit)
     first = np.append(x, lagrange_dalembert.momentum(system, x, v))
     program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
     q, at = x[:size], _arguments.numbers_of_position(system)
@@ -284,20 +240,20 @@ def coordinate_problem(
     if way.outline.shape[-1]:
         way.check("start", _arguments.points_at(system, q, way.outline))
     path, forces = _coordinate_guess(system, (q, last[:size]), way, steps)
-    push = extent.far / extent.unit / extent.duration**2
+    push = far / unit / duration**2
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
-        bent = system.places.beside(path, spread * extent.sizes * bow * rng.normal(size=n))
+        bent = system.places.beside(path, spread * sizes * bow * rng.normal(size=n))
         noise = spread * push * rng.normal(size=(steps, n))
         return _coordinate_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
         by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
-        return _coordinate_gap(program, goal, way, extent, by(discrete, (v, q), forces))
+        return _coordinate_gap(program, goal, way, sizes, far / duration, by(discrete, (v, q), forces))
 
-    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+    return program, bounds_of(program, limits, pins), first_guess, gap_of
 
 
 def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarray) -> CoordinateNodes:
@@ -305,20 +261,23 @@ def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarr
     system, h, n = discrete.system.plain, np.float64(discrete.time_step), discrete.system.dimension
     if goal.velocity is None:
         return CoordinateNodes(system, h, way.outline, unit, np.zeros((0, n)), np.zeros(n), goal.pose)
-    directions = np.linalg.svd(in_double(equations.forms, system, last) * unit)[2][system.constraints :]
+    forms = lagrange_dalembert.in_double(equations.forms, system, last)
+    directions = np.linalg.svd(forms * unit)[2][system.constraints :]
     return CoordinateNodes(system, h, way.outline, unit, directions, goal.velocity, goal.pose)
 
 
-def _coordinate_gap(program: Program, goal: Goal, way: Way, extent: Extent, orbit: Any) -> float:
-    """Return by what an orbit misses its goal, obstacles and places, in units; infinity where it ends before."""
-    q, nodes = orbit.configuration, program.steps.nodes
+def _coordinate_gap(program: Program, goal: Goal, way: Way, sizes: np.ndarray, speed: float, orbit: Any) -> float:
+    """Return by what an orbit misses its goal, obstacles and places, in units; infinity where it ends before.
+
+    Sizes are those of the way in each coordinate, or direction of a group.
+    """
+    q, nodes, system = orbit.configuration, program.steps.nodes, program.steps.nodes.system
     if len(q) <= len(program.rows) or not np.isfinite(q[-1]).all():
         return np.inf
-    system, sizes = nodes.system, extent.sizes
     off = [abs(q[-1, i] - number) / sizes[i] for i, number in goal.coordinates.items()]
     last = np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1])
-    momenta = np.full(len(nodes.directions), extent.far / extent.duration)
-    off += np.abs(program.goal_gap(last) / np.append(sizes[: 0 if goal.pose is None else None], momenta)).tolist()
+    units = np.append(sizes[: 0 if goal.pose is None else None], np.full(len(nodes.directions), speed))
+    off += np.abs(in_double(nodes.goal_gap, last) / units).tolist()
     flat = q.reshape(len(q), -1)
     off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], flat[1:]], axis=1)))
     if way.outline.shape[-1]:
@@ -331,8 +290,8 @@ def _coordinate_guess(
     system: Any, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
 ) -> tuple[Float[np.ndarray, "K ..."], Float[np.ndarray, "steps n"]]:
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
-    if way.guess.configuration is not None and way.guess.controls is not None:
-        return way.guess.configuration, way.guess.controls
+    if way.guess.motion is not None:
+        return way.guess.motion
     begin, end = ends
     q = system.places.beside(begin, np.linspace(0, 1, steps + 1)[:, None] * system.places.departure(begin, end))
     if way.outline.shape[-1]:
@@ -351,8 +310,8 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
     return np.concatenate([v, impulses, forces, after, momenta], axis=1).ravel()
 
 
-def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> Problem:
-    """Return the problem of one member, from velocity and pose of the start, pose and velocity of the goal."""
+def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> tuple[Any, ...]:
+    """Return the problem for `transcribe` of one member, from velocity and pose at the start and those of the goal."""
     (w, g, to_pose, to_velocity), system = ends, discrete.system
     free = dataclasses.replace(discrete, system=system.inside)
     steps, n = len(limits[0]) // system.rank, system.group.size
@@ -377,7 +336,7 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
         covectors = forces @ np.linalg.pinv(system.constraint_subspace).T
         return _group_gap(discrete, ends, way, driven_side_by_side(discrete, covectors[None], (w[None], g[None])))
 
-    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+    return program, bounds_of(program, limits, pins), first_guess, gap_of
 
 
 def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: Rollout) -> float:
@@ -405,8 +364,8 @@ def _group_guess(
     """
     group, (g, to_pose), guess = discrete.system.group, ends, way.guess
     rows = np.asarray(discrete.system.constraint_subspace)
-    if guess.configuration is not None:
-        return guess.configuration, guess.controls @ rows.T
+    if guess.motion is not None:
+        return guess.motion[0], guess.motion[1] @ rows.T
     last = g if to_pose is None else to_pose
     poses = g @ group.exp(np.linspace(0, 1, steps + 1)[:, None] * group.log(group.inverse(g) @ last))
     if group.is_affine:

@@ -24,21 +24,9 @@ from nonholo.simulation.traced import rollout
 from nonholo.systems import direction_lengths
 
 
-def goal_gaps(
-    discrete: Discretization, forces: Float[np.ndarray, "m steps k"], ends: Ends, block: int
-) -> tuple[Float[np.ndarray, "m c"], Float[np.ndarray, "m c n"]]:
-    """Return what goals are missed by, and its derivatives by the forces along the constraint, n = steps k.
-
-    Members go in blocks of one size, for which alone the derivatives are compiled.
-    """
-    blocks = np.arange(-(-len(forces) // block) * block).reshape(-1, block) % len(forces)
-    parts = [in_double(_gaps, discrete, *jax.tree.map(lambda x, at=at: x[at], (forces, ends))) for at in blocks]
-    values, slopes = (np.concatenate(part)[: len(forces)] for part in zip(*parts, strict=True))
-    return values, slopes.reshape(*values.shape, -1)
-
-
 @equinox.filter_jit
 def _gaps(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, Array]:
+    """Return what goals are missed by, (m, c), and its derivatives by the forces along the constraint."""
     system = discrete.system
     covectors = np.linalg.pinv(system.constraint_subspace).T
 
@@ -121,6 +109,11 @@ Gaps = Callable[[Float[np.ndarray, "m n"], np.ndarray], tuple[Float[np.ndarray, 
 """From forces of members, and which members these are, to c and J; NaN where there is none."""
 
 
+def _among(gaps: Gaps, members: np.ndarray) -> Gaps:
+    """Return the gaps of some members, who go by their numbers among these."""
+    return lambda f, at: gaps(f, members[at])
+
+
 def least_effort(
     gaps: Gaps, f: Float[np.ndarray, "M n"], limits: Limits
 ) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M c"], Float[np.ndarray, "M"]]:
@@ -138,11 +131,12 @@ def least_effort(
         if not len(going):
             break
         step = jump - plane.across(c[going] + _times(J[going], jump))
-        step += _along(gaps, (f[going], J[going], weights), plane, length, going)
+        own = _among(gaps, going)
+        step += _along(own, (f[going], J[going], weights), plane, length)
         step *= np.minimum(1, _REACH * length / (np.linalg.norm(step, axis=1) + _LEAST))[:, None]
         penalty[going] = np.maximum(penalty[going], 2 * np.abs(weights).max(axis=1))
         point = f[going], c[going], J[going]
-        (f[going], c[going], J[going]), fell = _shorten(gaps, point, step, penalty[going], limits, going)
+        (f[going], c[going], J[going]), fell = _shorten(own, point, step, penalty[going], limits)
         going = going[fell]
     return f, np.where(np.isfinite(c), c, np.inf), rest
 
@@ -201,9 +195,7 @@ def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
     return (A @ x[..., None])[..., 0]
 
 
-def _along(
-    gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray, members: np.ndarray
-) -> Float[np.ndarray, "m n"]:
+def _along(gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray) -> Float[np.ndarray, "m n"]:
     """Return steps along the linearized goal to less effort, by conjugate gradients; down the gradient where bent."""
     f, J, weights = point
     at, r = np.arange(len(f)), -plane.along(f)
@@ -213,7 +205,7 @@ def _along(
         if not len(at):
             break
         size = (_OFFSET * length[at] / np.linalg.norm(p[at], axis=1))[:, None]
-        change = (gaps(f[at] + size * p[at], members[at])[1] - J[at]) * weights[at, :, None]
+        change = (gaps(f[at] + size * p[at], at)[1] - J[at]) * weights[at, :, None]
         Hp = plane[at].along(p[at] - np.nan_to_num(change.sum(axis=1)) / size)
         good = np.vecdot(p[at], Hp) > _BENT * np.vecdot(p[at], p[at])
         total[at[~good]] += (count == 0) * p[at[~good]]
@@ -226,7 +218,7 @@ def _along(
 
 
 def _shorten(
-    gaps: Gaps, point: Point, step: np.ndarray, penalty: np.ndarray, limits: Limits, members: np.ndarray
+    gaps: Gaps, point: Point, step: np.ndarray, penalty: np.ndarray, limits: Limits
 ) -> tuple[Point, np.ndarray]:
     """Return forces, c and J after steps that are halved until effort and gap fall together, and where they do."""
     now, fell = tuple(x.copy() for x in point), np.zeros(len(step), dtype=bool)
@@ -239,7 +231,7 @@ def _shorten(
         if not len(at):
             break
         f = np.clip(point[0][at] + 0.5**count * step[at], *limits)
-        there = (f, *gaps(f, members[at]))
+        there = (f, *gaps(f, at))
         fell[at] = good = merit(at, f, there[1]) <= merit(at, point[0][at], point[1][at]) * (1 + 1e-12)
         for whole, part in zip(now, there, strict=True):
             whole[at[good]] = part[good]
@@ -257,22 +249,24 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
     Where torques cost much more than forces, or much less, the least effort may not be near: what meets the goal then
     is least in the units of the body.
     """
-    system, everyone, block = discrete.system, np.arange(len(ends[0])), min(BLOCK, len(ends[0]))
+    system, block = discrete.system, min(BLOCK, len(ends[0]))
     steps = len(limits[0]) // system.rank
     lengths = direction_lengths(system.constraint_subspace, system.displacement_units)
     units = goal_units(discrete, steps, ends)
 
-    def gaps(members: np.ndarray, unit: Any, f: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def gaps(unit: Any, f: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
-        their_ends = jax.tree.map(lambda x: x[members[at]], ends)
-        c, J = goal_gaps(discrete, (f * unit).reshape(len(f), steps, -1), their_ends, block)
-        return c / units, J * unit / units[:, None]
+        forces = (f * unit).reshape(len(f), steps, -1)
+        blocks = np.arange(-(-len(f) // block) * block).reshape(-1, block) % len(f)  # of one size: compiled once
+        parts = [in_double(_gaps, discrete, forces[i], jax.tree.map(lambda x, i=i: x[at[i]], ends)) for i in blocks]
+        c, J = (np.concatenate(part)[: len(f)] for part in zip(*parts, strict=True))
+        return c / units, J.reshape(*c.shape, -1) * unit / units[:, None]
 
     size, unit = sizes(discrete, steps, ends), np.tile(np.exp2(np.round(np.log2(lengths))), steps)
-    forces, misses, is_least = best(functools.partial(gaps, everyone, 1.0), size, limits)
+    forces, misses, is_least = best(functools.partial(gaps, 1.0), size, limits)
     failures = np.flatnonzero(_largest(misses) >= TOLERANCE)
     if len(failures) and (unit != unit[0]).any():
-        own = functools.partial(gaps, failures, unit)
+        own = _among(functools.partial(gaps, unit), failures)
         others, left, _ = best(own, size[failures] / unit, (limits[0] / unit, limits[1] / unit))
         is_nearer = _largest(left) < _largest(misses[failures])
         forces[failures[is_nearer]], misses[failures[is_nearer]] = others[is_nearer] * unit, left[is_nearer]
@@ -304,20 +298,19 @@ def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np
 
     Each member has a separate random stream, so that no other one changes where it begins.
     """
-    everyone, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
+    streams = [np.random.default_rng(member) for member in range(len(size))]
     nothing = np.clip(np.zeros_like(size), *limits)
-    misses = gaps(nothing, everyone)[0]
+    misses = gaps(nothing, np.arange(len(size)))[0]
     is_least = (_largest(misses) < _MET) & ~nothing.any(axis=1)  # no effort at all
     ends = nothing, np.where(is_least[:, None], misses, np.inf), is_least
-    left = everyone[~is_least]
     for spread in SPREAD:
+        left = np.flatnonzero(~ends[2])
         if not len(left):
             break
         first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
-        near, misses, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
+        near, misses, rest = least_effort(_among(gaps, left), first, limits)
         least = ((gap := _largest(misses)) < TOLERANCE) & (rest < _GRADIENT)
         better = least | (gap < _largest(ends[1][left]))
         for whole, part in zip(ends, (near, misses, least), strict=True):
             whole[left[better]] = part[better]
-        left = np.flatnonzero(~ends[2])
     return ends

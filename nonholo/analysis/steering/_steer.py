@@ -229,7 +229,7 @@ def _by_ipopt(
     results = []
     for member in range(len(ends[0])):
         one = tuple(each if each is None else each[member] for each in ends)
-        results.append(transcribe(group_problem(discrete, one, limits, way)))
+        results.append(transcribe(*group_problem(discrete, one, limits, way)))
         report(member + 1, len(ends[0]))
     return tuple(np.array(part) for part in zip(*results, strict=True))
 
@@ -244,15 +244,15 @@ def _steered_in_coordinates(
     n, start = discrete.system.dimension, _problems.checked_start(discrete, ends[0])
     q, v = start[0][: discrete.system.shapes[0][0]], start[1]
     if callable(way.outline):
-        way = way._replace(outline=_problems.MovingOutline.of(discrete.system, way.outline))
+        way = way._replace(outline=_problems.moving_outline(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = _arguments.limits_of_steps(bounds[0], steps, n)
     goal = _problems.checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, q), "goal": goal.numbers(discrete.system)}
-    extent = _problems.extent_of_way(discrete, start, goal, way, steps)
-    names = _arguments.coordinate_numbers(discrete.system, extent.sizes, extent.duration)
+    unit, far = _problems.extent_of_way(discrete, start, goal, way, steps)
+    names = _arguments.coordinate_numbers(discrete.system, far * unit, steps * float(discrete.time_step))
     way = way._replace(bounds=StateBounds.of(bounds[1], names, both))
-    problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, extent)
-    forces, gap, outcome = interruptibly(lambda: transcribe(problem))
+    problem = _problems.coordinate_problem(discrete, (start, goal), limits, way, (unit, far))
+    forces, gap, outcome = interruptibly(lambda: transcribe(*problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     return Steering(discrete, (v, q), forces, *map(np.asarray, (effort, gap, outcome)))

@@ -59,14 +59,10 @@ class Steps(NamedTuple):
         apart = self.nodes.places(x)[:, None] - self.centers
         return ((jnp.sum(apart**2, axis=-1) - self.radii**2) / (2 * self.radii)).ravel()
 
-    def cost(self, window: Array) -> Array:
-        """Return the effort of a step."""
-        f = self.parts(window)[2]
-        return self.time_step * f @ f / 2
-
     def lagrangian(self, window: Array, row: Array, weights: Array, weight: Array) -> Array:
-        """Return the weighted sum of cost and conditions."""
-        return weight * self.cost(window) + weights @ self.conditions(window, row)
+        """Return the weighted sum of the effort of a step and its conditions."""
+        f = self.parts(window)[2]
+        return weight * (self.time_step * f @ f / 2) + weights @ self.conditions(window, row)
 
 
 @equinox.filter_jit
@@ -111,14 +107,13 @@ class Program:
         return values.shape[1], len(end)
 
     @functools.cached_property
-    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+    def limits(self) -> tuple[np.ndarray, ...]:
         """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
         (count, ends), bounds = self.shape, self.steps.bounds
-        clear = np.zeros(len(self.steps.radii) * len(self.steps.nodes.outline))
+        clear = np.zeros(len(self.steps.radii) * self.steps.nodes.outline.shape[0])
         zeros = np.zeros(count - len(clear) - len(bounds.low))
         steps = np.concatenate([zeros, clear, bounds.low]), np.concatenate([zeros, clear + np.inf, bounds.high])
-        least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
-        return least, most
+        return tuple(np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
 
     @property
     def unknowns(self) -> int:
@@ -151,16 +146,11 @@ class Program:
         unit = _power(np.where(unit > 0, unit, 1 / _power(others)))
         return unit, _power((J * unit).max(axis=1).toarray())
 
-    def goal_gap(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
-        """Return what vanishes at the goal, of a last state."""
-        return in_double(self.steps.nodes.goal_gap, state)
-
     def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
         """Return the effort and its derivative."""
-        forces, slope, h = self.split(u)[1], np.zeros((len(self.rows), self.width)), float(self.steps.time_step)
-        start = self.steps.nodes.sizes[1]
-        slope[:, start : start + forces.shape[1]] = h * forces
-        return h * float((forces**2).sum()) / 2, slope.ravel()
+        forces, slope, h = self.split(u)[1], np.zeros(len(u)), float(self.steps.time_step)
+        self.split(slope)[1][:] = h * forces
+        return h * float((forces**2).sum()) / 2, slope
 
     def slopes(self, u: Float[np.ndarray, "n"]) -> sparse.csc_array:
         """Return the derivatives of the conditions."""
@@ -260,30 +250,23 @@ _OPTIONS = {
 }
 
 
-class Problem(NamedTuple):
-    """A program and what it belongs to.
+def transcribe(
+    program: Program, bounds: Limits, guess: Callable[..., np.ndarray], gap_of: Callable[[np.ndarray], float]
+) -> tuple[Float[np.ndarray, "steps k"], float, str]:
+    """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`.
 
-    Attributes:
+    Args:
         program: Equations of all steps, and the cost.
         bounds: The least and the largest value of each unknown.
         guess: From random numbers and a spread to unknowns.
         gap_of: By what the orbit under forces, (steps, k), misses goal, obstacles and places.
     """
-
-    program: Program
-    bounds: tuple[np.ndarray, np.ndarray]
-    guess: Callable[[np.random.Generator, float], np.ndarray]
-    gap_of: Callable[[np.ndarray], float]
-
-
-def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, str]:
-    """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
     rng, searches = np.random.default_rng(0), []
-    units = problem.program.units(problem.guess(np.random.default_rng(0), 1.0))
+    units = program.units(guess(np.random.default_rng(0), 1.0))
     for spread in _SPREADS:
-        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds, units)
-        forces = problem.program.split(unknowns)[1]
-        gap = problem.gap_of(forces)
+        unknowns, status = minimize(program, guess(rng, spread), bounds, units)
+        forces = program.split(unknowns)[1]
+        gap = gap_of(forces)
         searches.append((gap, forces, outcome_of(status, gap)))
         if searches[-1][2] == "converged":
             break
@@ -317,11 +300,10 @@ def minimize(
     IPOPT sees all of them in units.
     """
     (unit, rows), (least, most) = units, program.limits
-    numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
-    conditions = casadi.Sparsity.dense(len(rows))
+    numbers, conditions, one, nothing = map(casadi.Sparsity.dense, (program.unknowns, len(rows), 1, 0))
     patterns: Any = program.slope_places.pattern, program.curvature_places.pattern
     slopes, curvatures = (
-        casadi.Sparsity(each.shape[0], each.shape[1], each.indptr.tolist(), each.indices.tolist()) for each in patterns
+        casadi.Sparsity(x.shape[0], x.shape[1], x.indptr.tolist(), x.indices.tolist()) for x in patterns
     )
     scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
     effort = max(program.cost(np.where(bounds[0] < bounds[1], unit, 0.0))[1] * unit) or 1.0
