@@ -20,7 +20,7 @@ from nonholo.plot import theme
 from nonholo.plot.motion import coordinates, spheres, time_series, tracks
 from nonholo.plot.motion.phase_portrait import phase_portrait
 from nonholo.plot.parts import drawable_in_time, finish_page, is_free, new_page, same_space
-from nonholo.plot.sheets import blade_of_system, sheet_of
+from nonholo.plot.sheets import sheet_of, strip_of
 from nonholo.systems import AbstractLLSystem, LLSystem, System
 
 
@@ -61,7 +61,7 @@ def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     if orbit.canonical_pose is None:
         return []
     group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
-    if blade_of_system(orbit.system) is not None:
+    if strip_of(orbit.system) is not None:
         return [Panel(lambda axes: tracks.blade_track(orbit, axes=axes, flow=flow))]
     if group == SO(3):
         return [Panel(functools.partial(_body_axis, orbit, flow))]
@@ -101,7 +101,7 @@ def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    has_heading = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    has_heading = strip_of(orbit.system) is not None and orbit.canonical_pose is not None
     if flow is not None and flow.canonical_pose is None and (has_heading or orbit.system.is_spatial):
         flow = None
     (time_series.heading_and_speed if has_heading else time_series.velocity_components)(orbit, axes, flow)
