@@ -199,12 +199,8 @@ def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str |
 
 
 def _number(result: "xarray.Dataset", argument: str, name: str) -> "xarray.DataArray":
-    numbers = [str(names) for names, values in result.data_vars.items() if values.dims == ("member",)]
-    if name not in numbers:
-        names = ", ".join(numbers)
-        where = f"plot.sweep_map({argument}=...)"
-        raise error(where, "be one number of each member", shown(name), f"Choose among {names}.")
-    return result[name]
+    numbers = tuple(str(names) for names, values in result.data_vars.items() if values.dims == ("member",))
+    return result[choice(f"plot.sweep_map({argument}=...)", name, numbers, "Choose one number of each member.")]
 
 
 def _thin(*arrays: "xarray.DataArray") -> list[np.ndarray]:

@@ -210,8 +210,8 @@ def overview(
     for panel, own in zip(panels, axes, strict=True):
         theme.begin(own)
         panel.draw(own)
-    if panels[0].is_timed:
-        axes[0].set_xlabel("time")
+        if panel.is_timed:
+            own.set_xlabel("time")
     _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
     return finish_page(figure, name_of(orbit), _facts(orbit), path)
 
@@ -232,5 +232,3 @@ def _share_time(panels: list[Axes]) -> None:
         axes.sharex(panels[-1])
         axes.set_xlabel("")
         axes.tick_params(labelbottom=False)
-    for axes in panels[-1:]:
-        axes.set_xlabel("time")

@@ -4,7 +4,7 @@ In the plane a sleigh with its blade, center of mass and track, the outline of a
 their shadows, and boxes on the sphere that a body axis of theirs travels on.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
@@ -97,16 +97,6 @@ def motion_of(orbit: Orbit, point: Float[np.ndarray, "n dim"], length: float) ->
     return float(max(turn_per_state(orbit) / _TURN, speed * np.abs(np.diff(orbit.time)).max() / (_WAY * length)))
 
 
-def together(shows: Sequence[Show]) -> Show:
-    """Return what shows all of them."""
-
-    def show(frame: int) -> None:
-        for each in shows:
-            each(frame)
-
-    return show
-
-
 def draw_trail(axes: Axes, orbit: AbstractOrbit, part: Part, path: np.ndarray, color: Any = None, **look: Any) -> Show:
     """Return what draws the points of a path up to a frame, in the colors of time, or as the line of a flow."""
     at = evenly_spread(path, _MOST_PIECES)
@@ -138,7 +128,7 @@ def motion_in_plane(orbit: Orbit) -> float:
     return motion_of(orbit, point, float(np.ptp(plate(orbit.system)[0][:, 0])))
 
 
-def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show]:
     """Draw a body on SE(2) and others beside; return what shows a frame."""
     frame, outline = _axes(orbit.system), plate(orbit.system)
     radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
@@ -154,7 +144,7 @@ def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
     return _draw_in_plane(axes, orbit, parts, points, bodies)
 
 
-def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> list[Show]:
     """Draw a path in two coordinates, with the outline of the system or as a point; return what shows a frame."""
     if not track.is_place:
         look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
@@ -176,7 +166,7 @@ def _axes(system: System) -> Float[np.ndarray, "3 3"]:
 
 def _draw_in_plane(
     axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
-) -> Show:
+) -> list[Show]:
     motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
     if is_place:
@@ -195,7 +185,7 @@ def _draw_in_plane(
         shows.append(draw_trail(axes, orbit, part, path))
         shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at))
     theme.legend(axes, loc="best")
-    return together(shows)
+    return shows
 
 
 def _draw_outline(axes: Axes, part: Part, bodies: Bodies) -> Show:
@@ -245,7 +235,7 @@ def motion_in_space(orbit: Orbit) -> float:
     return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(box_in_space(orbit.system).half)))
 
 
-def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> list[Show]:
     """Draw a path in three coordinates with a body on SE(3) as a box, or a point; return what shows a frame."""
     box = box_in_space(orbit.system) if isinstance(orbit, Orbit) else None
     paths = [track.points(part.path) for part in parts]
@@ -261,7 +251,7 @@ def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Pa
         else:
             shows.append(_draw_box_with_axes(axes, part, box, floor))
     theme.legend(axes, loc="upper right")
-    return together(shows)
+    return shows
 
 
 def _draw_floor(axes: Axes, points: Float[np.ndarray, "L 3"]) -> float:
@@ -319,7 +309,7 @@ def motion_on_sphere(orbit: Orbit) -> float:
     return turn_per_state(orbit) / float(_TURN_ON_SPHERE)
 
 
-def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show]:
     """Draw the sphere, and on it the body and others beside; return what shows a frame."""
     gamma = forbidden_axis(orbit.system)
     name = "body axis 3" if gamma is None else "forbidden axis"
@@ -332,7 +322,7 @@ def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
         shows.append(_trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:])))
         shows.append((_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name))
     theme.legend(axes, loc="lower left", borderaxespad=0.0)
-    return together(shows)
+    return shows
 
 
 def _ghost(axes: Axes, view: View, frames: Orbit, *_: Any) -> Show:

@@ -346,10 +346,8 @@ def branch_tree(
     """
     system = _system_of(discrete, tree)
     if axes is None:
-        plane, growth = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
-    else:
-        plane, growth = pair("plot.branch_tree(axes=...)", axes)
-    plane, growth = map(theme.axes_or_new, (plane, growth))
+        axes = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
+    plane, growth = map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
     restricted = system.restrict(tree.momentum.real)
     momentum = on_plane(system, restricted)
     if momentum.shape[1] == 2:

@@ -1,6 +1,5 @@
 """Orbits in coordinates, or on groups with forms that depend on the pose: path, outline of the body, coordinates."""
 
-import functools
 import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -158,7 +157,8 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     columns = _names_of_path(space)
     is_place, names = columns[:2] == ["x", "y"], [symbol(name) for name in columns]
     title = "Path" if is_place else f"Plane of {names[0]} and {names[1]}"
-    return Track(title, names, functools.partial(_columns, [space.index(name) for name in columns]), is_place)
+    at = [space.index(name) for name in columns]
+    return Track(title, names, lambda of: of.configuration[:, at], is_place)
 
 
 def _names_of_path(names: tuple[str, ...]) -> list[str]:
@@ -208,7 +208,7 @@ def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> 
     first = _names_of_path(names)
     others = [i for i, name in enumerate(names) if name not in first] or list(range(len(names)))
     symbols = [symbol(names[i]) for i in others]
-    draw_components(axes, orbit, flow, functools.partial(_columns, others), symbols, "Coordinates", "coordinates")
+    draw_components(axes, orbit, flow, lambda of: of.configuration[:, others], symbols, "Coordinates", "coordinates")
 
 
 @theme.in_style
@@ -231,10 +231,6 @@ def symbol(name: str, *, is_rate: bool = False) -> str:
     base = base.replace("_", r"\_")
     formula = rf"\dot{{{base}}}" if is_rate else base
     return f"${formula}_{{{index}}}$" if index else f"${formula}$"
-
-
-def _columns(at: list[int], orbit: Any) -> np.ndarray:
-    return orbit.configuration[:, at]
 
 
 def _track_on(group: AbstractMatrixGroup) -> Track | None:
