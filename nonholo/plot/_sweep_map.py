@@ -3,9 +3,10 @@
 The quantity that is shown, the colors and names of outcomes, and the scales of axes come first.
 """
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
+import xarray
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
@@ -15,9 +16,6 @@ from matplotlib.ticker import MaxNLocator
 from nonholo.base.checks import choice, error, shown
 from nonholo.base.types import Float
 from nonholo.plot import theme
-
-if TYPE_CHECKING:
-    import xarray
 
 OUTCOME, DRAWN = "outcome", "value of the design"
 _ENDED = {
@@ -45,8 +43,8 @@ class Subject(NamedTuple):
         has_integers: Whether the quantity consists of whole numbers.
     """
 
-    values: "xarray.DataArray"
-    codes: "xarray.DataArray"
+    values: xarray.DataArray
+    codes: xarray.DataArray
     has_integers: bool
 
     @property
@@ -63,8 +61,6 @@ class Subject(NamedTuple):
 
 def subject_of(result: Any, quantity: str | None) -> Subject:
     """Return the quantity of that name, by default the first one of a task that is one number of each member."""
-    import xarray
-
     where = "plot.sweep_map"
     if not isinstance(result, xarray.Dataset) or OUTCOME not in result:
         remedy = "Pass what nh.sweep or nh.load_sweep returned."
@@ -81,19 +77,19 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     return Subject(successes.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
 
 
-def _first_of_the_task(result: "xarray.Dataset", numbers: list[str]) -> str:
+def _first_of_the_task(result: xarray.Dataset, numbers: list[str]) -> str:
     """Return the first name that is one number of each member and no draw; the outcome if there is none."""
     own = [name for name in numbers if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
     return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
 
 
-def label(values: "xarray.DataArray") -> str:
+def label(values: xarray.DataArray) -> str:
     """Return the name of a quantity with its units."""
     units = values.attrs.get("units", "1")
     return str(values.name).replace("_", " ") + ("" if units == "1" else f"  [{units}]")
 
 
-def ends(codes: "xarray.DataArray", *, successful: bool = False) -> Ends:
+def ends(codes: xarray.DataArray, *, successful: bool = False) -> Ends:
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
@@ -182,7 +178,7 @@ _OPAQUE = 600  # dots up to which they are opaque
 _Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
 
-def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str | None, y: str | None) -> _Drawn:
+def _draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | None, y: str | None) -> _Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
@@ -198,17 +194,17 @@ def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str |
     return members
 
 
-def _number(result: "xarray.Dataset", argument: str, name: str) -> "xarray.DataArray":
+def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArray:
     numbers = tuple(str(names) for names, values in result.data_vars.items() if values.dims == ("member",))
     return result[choice(f"plot.sweep_map({argument}=...)", name, numbers, "Choose one number of each member.")]
 
 
-def _thin(*arrays: "xarray.DataArray") -> list[np.ndarray]:
+def _thin(*arrays: xarray.DataArray) -> list[np.ndarray]:
     """Return the values of evenly spaced members, of at most this many."""
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
-def _dots_over(axes: Axes, subject: Subject, x: "xarray.DataArray") -> _Drawn:
+def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> _Drawn:
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thin(x, subject.values, subject.codes)
     good, outcomes = codes == 0, ends(subject.codes)
@@ -220,7 +216,7 @@ def _dots_over(axes: Axes, subject: Subject, x: "xarray.DataArray") -> _Drawn:
     return members, marks, None
 
 
-def _colored_dots(axes: Axes, subject: Subject, x: "xarray.DataArray", y: "xarray.DataArray") -> _Drawn:
+def _colored_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> _Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thin(x, y, subject.values, subject.codes)
     of_outcome, look = subject.values.name == OUTCOME, _look(across, 0.5)
@@ -395,18 +391,18 @@ def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
     return SweepMap(axes, line, marks, None)
 
 
-def _plane(array: "xarray.DataArray", *names: str) -> "xarray.DataArray":
+def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
     """Return an array along some axes, the first one last, ascending along all."""
     flat = array.squeeze([name for name in array.dims if name not in names])
     return flat.transpose(*reversed(names)).sortby(list(names))
 
 
-def _places(array: "xarray.DataArray", name: str) -> np.ndarray:
+def _places(array: xarray.DataArray, name: str) -> np.ndarray:
     """Return the values along an axis; vectors and matrices are numbered."""
     return np.asarray(array[name].values, dtype=float)
 
 
-def _dress_axis(axes: Axes, side: str, array: "xarray.DataArray", name: str) -> None:
+def _dress_axis(axes: Axes, side: str, array: xarray.DataArray, name: str) -> None:
     scale = "log" if is_geometric(_places(array, name)) else "linear"
     axes.set(**{f"{side}scale": scale, f"{side}label": label(array[name])})
 

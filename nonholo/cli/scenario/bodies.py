@@ -11,16 +11,14 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
 import nonholo
 from nonholo.base.checks import needs
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by, meanings, suggestion, summary
-
-if TYPE_CHECKING:
-    from nonholo.groups import AbstractMatrixGroup
+from nonholo.groups import AbstractMatrixGroup
 
 Maker = Callable[..., Any]
 _NAME = re.compile(r"(SO|SE|Translations)\((\d{1,4})\)")
@@ -39,7 +37,7 @@ class GroupTable(Section):
     form: Numbers | None = None
 
 
-def group_of(text: Any) -> "AbstractMatrixGroup":
+def group_of(text: Any) -> AbstractMatrixGroup:
     """Return the group that a scenario names or spans.
 
     Example:
@@ -53,7 +51,7 @@ def group_of(text: Any) -> "AbstractMatrixGroup":
     return factors[0] if len(factors) == 1 else nonholo.ProductGroup(*factors)
 
 
-def _factor(name: str) -> "AbstractMatrixGroup":
+def _factor(name: str) -> AbstractMatrixGroup:
     with contextlib.suppress(ValueError):
         if match := _NAME.fullmatch(name):
             return getattr(nonholo, match[1])(int(match[2]))

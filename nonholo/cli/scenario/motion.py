@@ -16,10 +16,7 @@ from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import MadeTable, Maker, arguments, body_table, is_example, nearest_kind, table_of
 from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind, checked_by, summary
 from nonholo.groups import components_of
-
-if TYPE_CHECKING:
-    from nonholo.discrete import Discretization
-    from nonholo.systems import System
+from nonholo.systems import System
 
 _KINDS = (nonholo.Gravity, nonholo.Linear, nonholo.Spring, nonholo.Friction, nonholo.Slip)
 _CLASSES: dict[str, Maker] = {make.__name__.lower(): make for make in _KINDS}
@@ -84,7 +81,7 @@ class AbstractForces(Section):
     table: Numbers | None = None
     scheme: Literal["energy", "variational"] | None = None
 
-    def on(self, system: "System") -> "System":
+    def on(self, system: System) -> System:
         """Return the system under these forces, the system itself without any."""
         tables = {word: getattr(self, word) for word in (*_CLASSES, "table")}
         parts: dict[str, Any] = {word: table for word, table in tables.items() if table is not None}
@@ -100,14 +97,14 @@ class AbstractForces(Section):
                 raise ValueError(f"`Forces({word}=...)` {_requirement(failure)}") from None
         return nonholo.Forced(system, **_acting([*parts.values()]), scheme=self.scheme)
 
-    def check(self, system: "System", steps: int) -> None:
+    def check(self, system: System, steps: int) -> None:
         """Refuse forces that cannot act on a system, or that end before a run does."""
         self.on(system)
         if self.table is not None and len(self.table) < steps:
             got = f"{len(self.table)}. Add rows, or take fewer steps"
             raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
 
-    def about(self, system: "System") -> dict[str, str]:
+    def about(self, system: System) -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
         if self.table is None:
             return {}
@@ -215,16 +212,16 @@ class AbstractScenario(Section):
             forces.check(moving(rest.data["body"].creation), rest.data["run"].steps)
         return forces
 
-    def system(self) -> "System":
+    def system(self) -> System:
         """Return the body under its forces."""
         return self.forces.on(moving(self.body.creation))
 
-    def discretization(self) -> "Discretization":
+    def discretization(self) -> "nonholo.Discretization":
         """Return the discretized body."""
         run = self.run
         return nonholo.discretize(self.system(), run.time_step, run.difference, run.constraint, run.order)
 
-    def in_force(self, discrete: "Discretization") -> Self:
+    def in_force(self, discrete: "nonholo.Discretization") -> Self:
         """Return the scenario with the library's choices of difference and constraint written out."""
         choices = {name: getattr(discrete, name, None) for name in ("difference", "constraint")}
         return self.model_copy(update={"run": self.run.model_copy(update=choices)})

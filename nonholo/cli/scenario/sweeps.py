@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, Self, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import AliasChoices, Field, model_validator
@@ -19,11 +19,7 @@ from nonholo.cli.scenario import files, sections
 from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
 from nonholo.ensembles import REDUCTIONS, STARTS, component_of, force_numbers, start_component
-from nonholo.ensembles.distributions import DISTRIBUTIONS
-
-if TYPE_CHECKING:
-    from nonholo.ensembles import AbstractDistribution
-    from nonholo.ensembles.designs import Grid, RandomDesign
+from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution
 
 _SIZES = {"size": "vectors", "n": "matrices"}  # what a distribution calls the length of what it draws
 _WORDS = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): make for name, make in DISTRIBUTIONS.items()}
@@ -67,7 +63,7 @@ def along(value: Any) -> np.ndarray:
     raise ValueError(f"{requirement} {{from = 0.1, to = 10.0, count = 50}}. Got {value!r}")
 
 
-def distribution_of(table: Any) -> "AbstractDistribution":
+def distribution_of(table: Any) -> AbstractDistribution:
     """Return the distribution that a table describes.
 
     Example:
@@ -156,7 +152,7 @@ class GridDesign(sections.Section):
             entry["count"] = max(1, round(entry["count"] * factor))
         return self.model_copy(update={"members": None, "values": type(self.values).model_validate(values)})
 
-    def design(self) -> "Grid":
+    def design(self) -> nonholo.Grid:
         """Return the design under the names of the library."""
         return nonholo.Grid({name: along(value) for name, value in self.values.by_name()}, rng=self.rng)
 
@@ -179,7 +175,7 @@ class RandomMembers(sections.Section):
         """Return the design itself: it has that number of members."""
         return self
 
-    def design(self) -> "RandomDesign":
+    def design(self) -> nonholo.RandomDesign:
         """Return the design under the names of the library."""
         drawings = {name: distribution_of(value) for name, value in self.values.by_name()}
         return nonholo.RandomDesign(self.members, drawings, rng=self.rng)
