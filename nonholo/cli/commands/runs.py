@@ -22,7 +22,7 @@ from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, built_in, effective_text, given_settings, load_scenario, stored_scenario
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.sweeps import SweepScenario, load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import SweepScenario, load_sweep_scenario
 from nonholo.cli.screen import report
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
 from nonholo.cli.screen.pictures import beside, draw, draw_sweep, warn_of_older
@@ -241,7 +241,7 @@ def sweep_and_keep(request: Loaded[Any], output: Path | None, how: dict[str, Any
     with scenario_errors(), reporting_warnings(), request.reporting():
         task = request.scenario.task()
     scenario, begin = request.scenario, time.perf_counter()
-    text = sweep_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
+    text = effective_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
     again = _is_stopped(output, SWEEP_FORMAT, lambda: text, ["png"] * scenario.output.plot, overwrite=False)
     design, progress = scenario.design.design(), sys.stderr.isatty() and not quiet
     run = functools.partial(ensembles.sweep, task, design, **how, resume=again, progress=progress, scenario=text)

@@ -260,9 +260,6 @@ def load_sweep_scenario(
     files.take_module(module)
     origin, document = files.read_document(name, files.built_in("sweeps"), settings)
     files.by_table(document)
-    for setting in settings:
-        files.assign(document, setting)
-    files.by_table(document)
     body = files.table_in(document, "body").get("kind")
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
@@ -275,14 +272,6 @@ def load_sweep_scenario(
     except ValueError as failure:
         raise origin.error(("design.members", str(failure))) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
-
-
-def sweep_text(scenario: SweepScenario) -> str:
-    """Return the scenario of a sweep as TOML with every value that was in force; running it again repeats it."""
-    document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
-    title, design = document.pop("title"), document.pop("design")
-    values = {f"{table}.{name}": x for table, own in design.pop("values").items() for name, x in own.items()}
-    return files.toml_text(title, {**document, "design": design, "design.values": values})
 
 
 def _complete(document: dict[str, Any]) -> None:
