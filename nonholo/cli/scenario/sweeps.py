@@ -138,19 +138,20 @@ class GridDesign(sections.Section):
     rng: Rng = 0
     values: Values[Annotated[Any, sections.checked_by(along)]]
 
-    def with_members(self) -> Self:
+    @model_validator(mode="after")
+    def _with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for this number of members."""
         if self.members is None:
             return self
         values = self.values.model_dump()
         ranges = [table[name] for table in values.values() for name in table if isinstance(table[name], dict)]
         if not ranges:
-            raise ValueError("needs a range with a count to scale")
+            raise ValueError("`Grid(members=...)` needs a range with a count to scale")
         whole = math.prod(len(along(value)) for table in values.values() for value in table.values())
         factor = (self.members / whole) ** (1 / len(ranges))
         for entry in ranges:
             entry["count"] = max(1, round(entry["count"] * factor))
-        return self.model_copy(update={"members": None, "values": type(self.values).model_validate(values)})
+        return self.model_validate(self.model_dump(exclude={"members"}) | {"values": values})
 
     def design(self) -> nonholo.Grid:
         """Return the design under the names of the library."""
@@ -170,10 +171,6 @@ class RandomMembers(sections.Section):
     members: sections.Count
     rng: Rng = 0
     values: Values[Annotated[Any, sections.checked_by(distribution_of)]]
-
-    def with_members(self) -> Self:
-        """Return the design itself: it has that number of members."""
-        return self
 
     def design(self) -> nonholo.RandomDesign:
         """Return the design under the names of the library."""
@@ -267,11 +264,7 @@ def load_sweep_scenario(
     request = files.validate(document, SweepScenario, Path(name).stem, origin)
     if flaws := _refusals(request.scenario):
         raise origin.error(*flaws)
-    try:
-        design = request.scenario.design.with_members()
-    except ValueError as failure:
-        raise origin.error(("design.members", str(failure))) from None
-    return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
+    return request
 
 
 def _complete(document: dict[str, Any]) -> None:
