@@ -97,13 +97,6 @@ class AbstractForces(Section):
                 raise ValueError(f"`Forces({word}=...)` {_requirement(failure)}") from None
         return nonholo.Forced(system, **_acting([*parts.values()]), scheme=self.scheme)
 
-    def check(self, system: System, steps: int) -> None:
-        """Refuse forces that cannot act on a system, or that end before a run does."""
-        self.on(system)
-        if self.table is not None and len(self.table) < steps:
-            got = f"{len(self.table)}. Add rows, or take fewer steps"
-            raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
-
     def about(self, system: System) -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
         if self.table is None:
@@ -208,8 +201,13 @@ class AbstractScenario(Section):
     @field_validator("forces")
     @classmethod
     def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
+        """Refuse forces that cannot act on the body, or that end before the run does."""
         if {"body", "run"} <= rest.data.keys():
-            forces.check(moving(rest.data["body"].creation), rest.data["run"].steps)
+            forces.on(moving(rest.data["body"].creation))
+            steps, table = rest.data["run"].steps, forces.table
+            if table is not None and len(table) < steps:
+                got = f"{len(table)}. Add rows, or take fewer steps"
+                raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
         return forces
 
     def system(self) -> System:
