@@ -65,8 +65,7 @@ class MadeTable(Section):
     """A table of which something is made, once when it is read, so that the library's refusals are reported."""
 
     make: ClassVar[Maker]
-    others: ClassVar[tuple[Maker, ...]] = ()
-    """Other ways to make the same, of other keys."""
+    ways: ClassVar[tuple[Maker, ...]]  # the same, then others, of other keys
 
     @property
     def keywords(self) -> dict[str, Any]:
@@ -77,13 +76,12 @@ class MadeTable(Section):
     def creation(self) -> Any:
         """The body that the table describes."""
         values = self.keywords
-        ways = (type(self).make, *type(self).others)
-        for make in ways:
+        for make in type(self).ways:
             known_arguments = arguments(make)
             necessary = {name for name, each in known_arguments.items() if each.default is each.empty}
             if necessary <= values.keys() <= known_arguments.keys():
                 return _call(make, {name: group_of(x) if name == "group" else x for name, x in values.items()})
-        words = " or ".join(", ".join(arguments(make)) for make in ways)
+        words = " or ".join(", ".join(arguments(make)) for make in type(self).ways)
         raise ValueError(f"must hold the keys {words}. Got {', '.join(values) or 'none'}")
 
     @model_validator(mode="after")
@@ -110,17 +108,17 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
         kind: Whether a key of the table names it.
         plain: Whether values are numbers, lists of them or groups, as everywhere in the library.
     """
-    others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
+    ways = (make, make.from_inertia) if hasattr(make, "from_inertia") else (make,)
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
-    common = set.intersection(*({*arguments(way)} for way in (make, *others)))
-    for way in (make, *others):
+    common = set.intersection(*({*arguments(way)} for way in ways))
+    for way in ways:
         about = meanings(way)
         for name, each in arguments(way).items():
             shape = Group if name == "group" else Numbers if plain else Any
             meaning = about.get(name, f"As in `{way.__qualname__}`.")
             fields.setdefault(name, (shape, Field(_default_of(each) if name in common else None, description=meaning)))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
-    table.make, table.others = make, others
+    table.make, table.ways = make, ways
     return table
 
 

@@ -35,15 +35,11 @@ def draw_deltoid(axes: Axes, region: Deltoid) -> tuple[Polygon, Line2D, PathColl
     return inside, boundary, axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
 
 
-def name_inside(axes: Axes, region: Deltoid, words: str) -> None:
-    """Write words into the region with three real values."""
-    x, y = on_plane(region.discrete.system, region.cusps).T @ [0.4, 0.3, 0.3]
-    axes.annotate(words, (x, y), ha="center", va="center", color=theme.DISCRETE, fontweight="bold", zorder=5)
-
-
 def dress_momenta(axes: Axes, region: Deltoid, title: str) -> None:
-    """Name the axes; the corners beside the long cusp are free, for the legend and for words."""
+    """Name the axes and the region; the corners beside the long cusp are free, for the legend and for words."""
     cusps = on_plane(region.discrete.system, region.cusps)
+    look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
+    axes.annotate("3 real values", cusps.T @ [0.4, 0.3, 0.3], **look)
     points_down = bool(cusps[0, 1] < cusps[1, 1])
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
@@ -109,7 +105,6 @@ def branch_counts(
         around = ellipse(orbit.system, float(orbit.energy[0]))
         level = axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
         path = draw_orbit(axes, orbit, momenta_on_plane(orbit))
-    name_inside(axes, region, "3 real values")
     dress_momenta(axes, region, "Real values")
     return BranchCounts(axes, inside, boundary, dots, resting, level, path)
 
@@ -239,7 +234,6 @@ def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
     dots = _dots(axes, values, places, here[None])
     labels = _labels(axes, sheet, values, places, places - there)
-    name_inside(axes, region, "3 real values")
     dress_momenta(axes, region, _title(values))
     return BranchesPicture(axes, values, *dots, None, tuple(tangents), labels)
 
