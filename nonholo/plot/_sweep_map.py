@@ -183,15 +183,10 @@ def _draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | N
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
-        members = _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
-    elif subject.values.name == OUTCOME:
-        members = _outcomes(axes, subject)
-    elif x is not None:
-        members = _dots_over(axes, subject, _number(result, "x", x))
-    else:
-        members = _histogram(axes, subject)
-    theme.legend_above(axes, subject.title)
-    return members
+        return _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
+    if subject.values.name == OUTCOME:
+        return _outcomes(axes, subject)
+    return _histogram(axes, subject) if x is None else _dots_over(axes, subject, _number(result, "x", x))
 
 
 def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArray:
@@ -209,8 +204,7 @@ def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> _Drawn:
     across, values, codes = _thin(x, subject.values, subject.codes)
     good, outcomes = codes == 0, ends(subject.codes)
     members = axes.scatter(across[good], values[good], **theme.own_look(theme.DISCRETE), **_look(across, 0.2))
-    axes.set(xlabel=label(x), xscale=scale_along(across))
-    axes.set(ylabel=label(subject.values), yscale=scale_along(values))
+    axes.set(xlabel=label(x), xscale=scale_along(across), ylabel=label(subject.values), yscale=scale_along(values))
     marks = mark_below(axes, across, codes, outcomes, marker="|")
     key_to(axes, outcomes)
     return members, marks, None
@@ -228,8 +222,7 @@ def _colored_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.D
         good = codes == 0
         members = axes.scatter(across[good], up[good], c=values[good], cmap=theme.TIME, norm=scale_of(subject), **look)
         bar = color_key(axes, members, subject)
-    axes.set(xlabel=label(x), xscale=scale_along(across))
-    axes.set(ylabel=label(y), yscale=scale_along(up))
+    axes.set(xlabel=label(x), xscale=scale_along(across), ylabel=label(y), yscale=scale_along(up))
     key_to(axes, outcomes)
     return members, marks, bar
 
@@ -327,15 +320,19 @@ def sweep_map(
         >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
         ((2, 3), 'inertia')
     """
-    if (subject := subject_of(result, quantity)).codes.dims == ("member",):
-        axes = theme.axes_or_new(axes, (7.2, 5.4))
-        return SweepMap(axes, *_draw_draws(axes, result, subject, x, y))
-    names = [str(name) for name in subject.values.dims]
-    _check_named(names, x, y)
-    free = [name for name in names if subject.values.sizes[name] > 1 and name not in (x, y)]
-    along = _axes_of(free, x, y) or names[:1]  # others may only have one value
+    subject = subject_of(result, quantity)
+    along = [] if subject.codes.dims == ("member",) else _axes_of(subject, x, y)
     axes = theme.axes_or_new(axes, (7.2, 5.4))
-    return _curve(axes, subject, *along) if len(along) == 1 else _map(axes, subject, *along)
+    if along:
+        drawn = (_curve if len(along) == 1 else _map)(axes, subject, *along)
+    else:
+        drawn = _draw_draws(axes, result, subject, x, y)
+    # the rest of the design has one value each
+    coordinates = subject.values.coords.items()
+    single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
+    rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
+    theme.legend_above(axes, ", ".join([subject.title, *rest]))
+    return SweepMap(axes, *drawn)
 
 
 def _check_named(names: list[str], x: str | None, y: str | None) -> None:
@@ -348,17 +345,19 @@ def _check_named(names: list[str], x: str | None, y: str | None) -> None:
         raise error("plot.sweep_map(result=...)", "have an axis for x, and another one for y", got, remedy)
 
 
-def _axes_of(free: list[str], x: str | None, y: str | None) -> list[str]:
-    """Return the axes that are named, or else the first ones that are free."""
-    across = x or (free.pop(0) if free else None)
-    up = y or (free.pop(0) if free and across else None)
-    if free:
-        remedy = f"Pass result.sel({free[0]}=..., method='nearest'), or result.isel({free[0]}=0)."
-        raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(free)}", remedy)
-    return [name for name in (across, up) if name is not None]
+def _axes_of(subject: Subject, x: str | None, y: str | None) -> list[str]:
+    """Return the axes that are named, or else the first ones of those that have several values; at least one."""
+    names = [str(name) for name in subject.values.dims]
+    _check_named(names, x, y)
+    free = (name for name in names if subject.values.sizes[name] > 1 and name not in (x, y))
+    along = [name for name in (x or next(free, None), y or next(free, None)) if name is not None]
+    if more := list(free):
+        remedy = f"Pass result.sel({more[0]}=..., method='nearest'), or result.isel({more[0]}=0)."
+        raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(more)}", remedy)
+    return along or names[:1]
 
 
-def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
+def _map(axes: Axes, subject: Subject, x: str, y: str) -> _Drawn:
     values, codes = (_plane(array, x, y) for array in (subject.values, subject.codes))
     edges = borders(_places(values, x)), borders(_places(values, y))
     outcomes = ends(subject.codes, successful=subject.values.name == OUTCOME)
@@ -373,11 +372,10 @@ def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
     _dress_axis(axes, "x", values, x)
     _dress_axis(axes, "y", values, y)
     key_to(axes, outcomes)
-    _name(axes, subject)
-    return SweepMap(axes, members, marks, bar)
+    return members, marks, bar
 
 
-def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
+def _curve(axes: Axes, subject: Subject, x: str) -> _Drawn:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
     across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
@@ -387,8 +385,7 @@ def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
     _dress_axis(axes, "x", values, x)
     axes.set(ylabel=label(subject.values), yscale=scale_along(values.values))
     key_to(axes, outcomes)
-    _name(axes, subject)
-    return SweepMap(axes, line, marks, None)
+    return line, marks, None
 
 
 def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
@@ -405,11 +402,3 @@ def _places(array: xarray.DataArray, name: str) -> np.ndarray:
 def _dress_axis(axes: Axes, side: str, array: xarray.DataArray, name: str) -> None:
     scale = "log" if is_geometric(_places(array, name)) else "linear"
     axes.set(**{f"{side}scale": scale, f"{side}label": label(array[name])})
-
-
-def _name(axes: Axes, subject: Subject) -> None:
-    """Write what is shown, and the values that the rest of the design has."""
-    coordinates = subject.values.coords.items()
-    single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
-    rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
-    theme.legend_above(axes, ", ".join([subject.title, *rest]))
