@@ -7,6 +7,7 @@ others those of the canonical frame. The drawing on that plane is not decided he
 """
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -179,14 +180,12 @@ class StripSheet:
         """Return angles and translations."""
         return points
 
-    def pieces(self, points: Float[np.ndarray, "K 2"]) -> list[Float[np.ndarray, "L 2"]]:
-        """Return the runs of a curve between the angles -pi and pi, turned over after each full turn."""
-        cut = []
+    def pieces(self, points: Float[np.ndarray, "K 2"]) -> Iterator[Float[np.ndarray, "L 2"]]:
+        """Yield the runs of a curve between the angles -pi and pi, turned over after each full turn."""
         for number in np.unique(np.floor((points[:, 0] + np.pi) / (2 * np.pi)).astype(int)):
             shift, flip = 2 * np.pi * number, (-1) ** int(number)
             inside = (points[:, 0] >= shift - np.pi) & (points[:, 0] <= shift + np.pi)
-            cut += [(points[run] - [shift, 0.0]) * [1.0, flip] for run in runs(inside)]
-        return cut
+            yield from ((points[run] - [shift, 0.0]) * [1.0, flip] for run in runs(inside))
 
     def step_angles(self, points: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K"]:
         r"""Return $\Delta$."""

@@ -309,11 +309,9 @@ def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comm
     lines = [f"# [{name}]  # the start of the example, unless this one is given" if as_comments else f"[{name}]"]
     for key, field in table.model_fields.items():
         value = values.get(key, None if field.is_required() else field.default)
-        meaning = field.description or ""
-        if value is None:
-            lines.append(_entry(f"# {key} = ...", f"needed: {meaning}" if field.is_required() else meaning))
-        else:
-            lines.append(_entry(f"{'# ' if as_comments else ''}{key} = {as_toml(value)}", meaning))
+        line = f"# {key} = ..." if value is None else f"{'# ' if as_comments else ''}{key} = {as_toml(value)}"
+        needed = "needed: " if value is None and field.is_required() else ""
+        lines.append(_entry(line, needed + (field.description or "")))
     return "\n".join(lines)
 
 

@@ -262,7 +262,7 @@ def load_sweep_scenario(
         _complete(document)
     files.complete(document, name, origin, start=False)
     request = files.validate(document, SweepScenario, Path(name).stem, origin)
-    if flaws := _refusals(request.scenario):
+    if flaws := list(_refusals(request.scenario)):
         raise origin.error(*flaws)
     return request
 
@@ -307,25 +307,20 @@ def _typical(value: Any) -> Any:
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
 
 
-def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
-    """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
-    flaws = _refused_values(scenario)
+def _refusals(scenario: SweepScenario) -> Iterator[tuple[str, str]]:
+    """Yield key paths and texts of what a design cannot vary, and a scenario of one motion may say, but no sweep."""
+    entries = [(table, name) for table in TABLES for name in getattr(scenario.design.values, table)]
+    if not entries:
+        yield "design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'
+    names = _varied_names(scenario)
+    yield from filter(None, (_flaw(scenario, table, name, names[table]) for table, name in entries))
     if scenario.start is not None and scenario.is_family:
-        flaws.append(("start", "is not for sweeps of this body, whose keys have its start"))
+        yield "start", "is not for sweeps of this body, whose keys have its start"
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key, None) is not None:
-            flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"))
+            yield f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"
     if scenario.run.save_every != 1:
-        flaws.append(("run.save_every", "is not for sweeps: [keep] lists what is kept"))
-    return flaws
-
-
-def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
-    """Return key paths and texts of what a design cannot vary."""
-    if not (entries := [(table, name) for table in TABLES for name in getattr(scenario.design.values, table)]):
-        return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
-    names = _varied_names(scenario)
-    return [flaw for table, name in entries if (flaw := _flaw(scenario, table, name, names[table]))]
+        yield "run.save_every", "is not for sweeps: [keep] lists what is kept"
 
 
 def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]) -> tuple[str, str] | None:

@@ -4,6 +4,7 @@ Values are drawn on the variety of displacements, or as tangents of the deltoid,
 three real ones. Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
 """
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
@@ -213,7 +214,7 @@ def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W:
     real = np.flatnonzero(values.is_real)
     places = sheet.places(sheet.variety.points(values.displacement[real].real))
     dots = _dots(axes, values, places, sheet.places(sheet.variety.points(W[None])))
-    labels = _labels(axes, sheet, values, places, places * sheet.inwards(places))
+    labels = tuple(_labels(axes, sheet, values, places, places * sheet.inwards(places)))
     theme.write_title(axes, _title(values))
     sheet.dress(axes, curves, places)
     return BranchesPicture(axes, values, *dots, level, (), labels)
@@ -233,7 +234,7 @@ def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.
         tangents += axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
     dots = _dots(axes, values, places, here[None])
-    labels = _labels(axes, sheet, values, places, places - there)
+    labels = tuple(_labels(axes, sheet, values, places, places - there))
     dress_momenta(axes, region, _title(values))
     return BranchesPicture(axes, values, *dots, None, tuple(tangents), labels)
 
@@ -263,18 +264,16 @@ def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) ->
     return principal, others, present
 
 
-def _labels(axes: Axes, sheet: Sheet, values: Branches, places: np.ndarray, away: np.ndarray) -> tuple[Annotation, ...]:
+def _labels(axes: Axes, sheet: Sheet, values: Branches, places: np.ndarray, away: np.ndarray) -> Iterator[Annotation]:
     """Write index and step angle beside each real value, in a direction."""
     angles = np.degrees(_angles(sheet, values))
-    labels = []
     for i, place, direction in zip(np.flatnonzero(values.is_real), places, away, strict=True):
         size = np.linalg.norm(direction)
         x, y = direction / size if size > 0 else np.array([0.0, 1.0])
         text = f"{i}: {angles[i]:.0f}°".replace("-", "\u2212")
         look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
         shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
-        labels.append(axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look))
-    return tuple(labels)
+        yield axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look)
 
 
 def _title(values: Branches) -> str:
@@ -383,8 +382,7 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     counts = axes.plot(level, tree.counts, "o", markersize=7, **theme.own_look(theme.DISCRETE, "distinct images"))[0]
     look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
-    axes.set(xlabel="generation k", ylabel="number of images", yscale="log")
-    axes.set_title("Growth", loc="left")
+    axes.set(title="Growth", xlabel="generation k", ylabel="number of images", yscale="log")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_minor_locator(NullLocator())
     theme.legend(axes, loc="upper left")
