@@ -233,8 +233,7 @@ class Scenario(AbstractScenario):
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""
-        branch = {} if self.run.branch == "principal" else {"branch": self.run.branch}
-        return {**self.start.model_dump(exclude_none=True), "save_every": self.run.save_every, **branch}
+        return self.start.model_dump(exclude_none=True) | self.run.model_dump(include={"save_every", "branch"})
 
 
 def is_ready(product: Any) -> bool:

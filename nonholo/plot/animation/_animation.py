@@ -186,8 +186,7 @@ def _write_gif(path: str, figure: Figure, shows: list[Show], total: int, rate: f
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy(), "RGB")
 
     some = np.unique(np.linspace(0, total - 1, _SHOWN_FOR_PALETTE).round().astype(int)).tolist()
-    palette = _palette([photograph() for _ in _frames(shows, some)])
-    look: Any = {"palette": palette, "dither": Image.Dither.NONE}
+    look: Any = {"palette": _palette([photograph() for _ in _frames(shows, some)]), "dither": Image.Dither.NONE}
     first, *others = [photograph().quantize(**look) for _ in _frames(shows, range(total), progress)]
     first.save(path, save_all=True, append_images=others, duration=max(20, round(1000 / rate)), loop=0, optimize=True)
 

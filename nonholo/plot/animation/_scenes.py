@@ -314,8 +314,7 @@ def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show]:
     gamma = forbidden_axis(orbit.system)
     name = "body axis 3" if gamma is None else "forbidden axis"
     gamma = np.array([0.0, 0.0, 1.0]) if gamma is None else gamma
-    own = parts[0]
-    view = best_view(own.path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
+    view = best_view(parts[0].path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
     shows = []
     for part in reversed(parts):
