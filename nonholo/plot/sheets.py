@@ -6,9 +6,8 @@ $(\Delta, \nu)$ of sleighs, whose edges are one upside down, a Moebius band. Poi
 others those of the canonical frame. The drawing on that plane is not decided here.
 """
 
-import dataclasses
 from collections.abc import Iterator
-from typing import Any, TypeAlias, cast
+from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -40,8 +39,7 @@ def runs(inside: np.ndarray) -> list[slice]:
     return [slice(first, last) for first, last in ends if last - first > 1]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class DiscSheet:
+class DiscSheet(NamedTuple):
     """The disc of a top: the radius is the step angle in half-turns, the direction that of the turn.
 
     Attributes:
@@ -124,8 +122,7 @@ def _laid(z: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:
 _TALLEST = 4.0  # height of the strip in translations without turning
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class StripSheet:
+class StripSheet(NamedTuple):
     """The strip of a sleigh, and where its blade is.
 
     All points of the line across the blade move along it; the contact point is the one nearest to the origin of body

@@ -1,7 +1,6 @@
 """The unit sphere in orthographic projection, paths, axes and words on it: what lies behind is faded, not hidden."""
 
-import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +18,7 @@ _SHADES = 256
 _BEHIND = 0.22  # opacity of what lies behind the sphere
 
 
-@dataclasses.dataclass(frozen=True)
-class View:
+class View(NamedTuple):
     """An orthographic view of space with e3 upwards, from an azimuth and an elevation in degrees.
 
     Example:

@@ -64,8 +64,7 @@ def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overw
             store, ran = run_and_keep(request, output, overwrite=overwrite, progress=progress)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.reason}", FAILED)
-    paths = (beside(store, "png") if wishes.plot else None, beside(store, "gif") if wishes.gif else None)
-    pictures = draw(ran.orbit, *paths, progress=progress)
+    pictures = draw(ran.orbit, store, suffixes, progress=progress)
     warn_of_older(store, pictures)
     _report(request, ran, {"store": str(store), **pictures}, json=json, quiet=quiet)
     if ran.reason:

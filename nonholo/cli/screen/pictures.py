@@ -106,14 +106,14 @@ def _film(orbit: Any, path: Path, *, progress: bool, **look: Any) -> str:
         return str(nonholo.plot.animate(orbit, path, progress=report, overwrite=True, **look))
 
 
-def draw(orbit: Any, picture: Path | None, animation: Path | None, *, progress: bool) -> dict[str, str | None]:
-    """Draw the overview and the animation, with progress if wanted; return their paths, None for what is not drawn."""
+def draw(orbit: Any, store: Path, suffixes: list[str], *, progress: bool) -> dict[str, str | None]:
+    """Draw the overview and the animation beside a store; return their paths, None for what is not drawn."""
     paths: dict[str, str | None] = {"picture": None, "animation": None}
     with _at_no_cost():
-        if picture is not None:
-            paths["picture"] = _save(picture, lambda: figure_of(OVERVIEW, orbit, {}), progress=progress)
-        if animation is not None:
-            paths["animation"] = _film(orbit, animation, progress=progress)
+        if "png" in suffixes:
+            paths["picture"] = _save(beside(store, "png"), lambda: figure_of(OVERVIEW, orbit, {}), progress=progress)
+        if "gif" in suffixes:
+            paths["animation"] = _film(orbit, beside(store, "gif"), progress=progress)
     return paths
 
 
