@@ -13,7 +13,6 @@ from matplotlib.lines import Line2D
 
 from nonholo.base.checks import error, flags, shown
 from nonholo.base.types import Float
-from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import parts, theme
 from nonholo.plot.motion.coordinates import draw_track, dress_path, mark_path_ends, track_of
@@ -220,12 +219,11 @@ def point_track(
         return _in_coordinates(where, orbit, axes, flow)
     orbit = parts.orbit_with_poses(where, orbit)
     group = orbit.system.group
-    n = group.size - 1
-    if n < 2 or group != SE(n):
+    if not group.is_affine:
         remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
     beside: Any = parts.same_space("point_track(flow=...)", flow, orbit, parts.orbit_with_poses)
-    axes = _axes(axes, 2 if n == 2 else 3)
+    axes = _axes(axes, 2 if group.size == 3 else 3)
     largest = np.sort(np.argsort(-np.ptp(orbit.position, axis=0), kind="stable")[:3])  # in which the path is largest
     at = parts.evenly_spread(orbit.position)
     position = orbit.position[:, largest]
