@@ -109,7 +109,7 @@ def animate(
     return target
 
 
-def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., list[Show]]]:
+def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Iterator[Show]]]:
     """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
     track = track_of(orbit) or momentum_track(orbit)
     scenes: dict[Any, tuple[Any, Any]] = {

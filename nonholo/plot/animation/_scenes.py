@@ -4,7 +4,7 @@ In the plane a sleigh with its blade, center of mass and track, the outline of a
 their shadows, and boxes on the sphere that a body axis of theirs travels on.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
@@ -128,7 +128,7 @@ def motion_in_plane(orbit: Orbit) -> float:
     return motion_of(orbit, point, float(np.ptp(plate(orbit.system)[0][:, 0])))
 
 
-def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show]:
+def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a body on SE(2) and others beside; return what shows a frame."""
     frame, outline = _axes(orbit.system), plate(orbit.system)
     radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
@@ -144,7 +144,7 @@ def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show
     return _draw_in_plane(axes, orbit, parts, points, bodies)
 
 
-def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> list[Show]:
+def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a path in two coordinates, with the outline of the system or as a point; return what shows a frame."""
     if not track.is_place:
         look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
@@ -166,7 +166,7 @@ def _axes(system: System) -> Float[np.ndarray, "3 3"]:
 
 def _draw_in_plane(
     axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
-) -> list[Show]:
+) -> Iterator[Show]:
     motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
     if is_place:
@@ -180,12 +180,10 @@ def _draw_in_plane(
     axes.tick_params(length=0, labelleft=False, labelbottom=False)
     axes.spines[:].set_visible(False)
     axes.set_axisbelow(True)
-    shows = []
     for part, path, at in motions:
-        shows.append(draw_trail(axes, orbit, part, path))
-        shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at))
+        yield draw_trail(axes, orbit, part, path)
+        yield draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at)
     theme.legend(axes, loc="best")
-    return shows
 
 
 def _draw_outline(axes: Axes, part: Part, bodies: Bodies) -> Show:
@@ -235,23 +233,21 @@ def motion_in_space(orbit: Orbit) -> float:
     return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(box_in_space(orbit.system).half)))
 
 
-def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> list[Show]:
+def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a path in three coordinates with a body on SE(3) as a box, or a point; return what shows a frame."""
     box = box_in_space(orbit.system) if isinstance(orbit, Orbit) else None
     paths = [track.points(part.path) for part in parts]
     reach = 0.0 if box is None else float(np.linalg.norm(box.half) * _ARM + np.linalg.norm(box.center))
     every = np.concatenate(paths)
     floor = _draw_floor(axes, np.concatenate([every - reach, every + reach]))
-    shows = []
     for part, path in zip(parts, paths, strict=True):
-        shows.append(draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1))
-        shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5))
+        yield draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1)
+        yield draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5)
         if box is None:
-            shows.append(draw_point(axes, part, _VIEW(track.points(part.frames))[0]))
+            yield draw_point(axes, part, _VIEW(track.points(part.frames))[0])
         else:
-            shows.append(_draw_box_with_axes(axes, part, box, floor))
+            yield _draw_box_with_axes(axes, part, box, floor)
     theme.legend(axes, loc="upper right")
-    return shows
 
 
 def _draw_floor(axes: Axes, points: Float[np.ndarray, "L 3"]) -> float:
@@ -309,19 +305,17 @@ def motion_on_sphere(orbit: Orbit) -> float:
     return turn_per_state(orbit) / float(_TURN_ON_SPHERE)
 
 
-def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> list[Show]:
+def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Iterator[Show]:
     """Draw the sphere, and on it the body and others beside; return what shows a frame."""
     gamma = forbidden_axis(orbit.system)
     name = "body axis 3" if gamma is None else "forbidden axis"
     gamma = np.array([0.0, 0.0, 1.0]) if gamma is None else gamma
     view = best_view(parts[0].path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
-    shows = []
     for part in reversed(parts):
-        shows.append(_trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:])))
-        shows.append((_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name))
+        yield _trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:]))
+        yield (_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name)
     theme.legend(axes, loc="lower left", borderaxespad=0.0)
-    return shows
 
 
 def _ghost(axes: Axes, view: View, frames: Orbit, *_: Any) -> Show:
