@@ -212,7 +212,11 @@ def overview(
         panel.draw(own)
         if panel.is_timed:
             own.set_xlabel("time")
-    _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
+    timed = [own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed]
+    for own in timed[:-1]:  # the lowest has the times of all
+        own.sharex(timed[-1])
+        own.set_xlabel("")
+        own.tick_params(labelbottom=False)
     return finish_page(figure, name_of(orbit), _facts(orbit), path)
 
 
@@ -225,10 +229,3 @@ def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
     grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
     places = (grid[:, 0], *(grid[row, 1] for row in range(len(others))))
     return [figure.add_subplot(place, projection=each.projection) for place, each in zip(places, panels, strict=True)]
-
-
-def _share_time(panels: list[Axes]) -> None:
-    for axes in panels[:-1]:
-        axes.sharex(panels[-1])
-        axes.set_xlabel("")
-        axes.tick_params(labelbottom=False)

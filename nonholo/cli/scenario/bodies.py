@@ -99,6 +99,7 @@ def _call(make: Maker, values: dict[str, Any]) -> Any:
         raise ValueError(f"cannot be made of this: {type(failure).__name__}: {failure}") from failure
 
 
+@functools.cache
 def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> type[MadeTable]:
     """Return the table whose keys are the arguments of a class or a function.
 
@@ -165,13 +166,9 @@ def body_table(kind: str) -> type[MadeTable]:
     Raises:
         KeyError: There is none of this name.
     """
-    return table_of(kind, _OWN[kind], kind=True, plain=False) if kind in _OWN else _library_table(kind)
-
-
-@functools.cache
-def _library_table(kind: str) -> type[MadeTable]:
-    systems = _systems()
-    name = SHORT.get(kind, kind)
+    if kind in _OWN:
+        return table_of(kind, _OWN[kind], kind=True, plain=False)
+    systems, name = _systems(), SHORT.get(kind, kind)
     return table_of(kind, systems[name] if name in systems else examples()[kind], kind=True)
 
 
