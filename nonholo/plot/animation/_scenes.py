@@ -26,8 +26,6 @@ from nonholo.systems import System
 
 Show: TypeAlias = Callable[[int], None]
 """A function that shows a frame."""
-Points: TypeAlias = Callable[[Any], Float[np.ndarray, "K d"]]
-"""A function of states that gives their points."""
 
 _BETWEEN = 8  # states of a flow from frame to frame
 _MOST_PIECES = 1500  # of a trail
@@ -118,8 +116,7 @@ def draw_point(axes: Axes, part: Part, points: Float[np.ndarray, "F 2"]) -> Show
     return lambda frame: dot.set_data(*points[frame : frame + 1].T)
 
 
-Drawn: TypeAlias = Callable[[Any], Bodies | None]
-"""A function of states that gives their bodies."""
+Motion: TypeAlias = tuple[Part, Float[np.ndarray, "K 2"], Bodies | None]  # a part, its path, its body in each frame
 
 
 def motion_in_plane(orbit: Orbit) -> float:
@@ -131,31 +128,22 @@ def motion_in_plane(orbit: Orbit) -> float:
 def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a body on SE(2) and others beside; return what shows a frame."""
     frame, outline = _axes(orbit.system), plate(orbit.system)
-    radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
-
-    def points(states: Orbit) -> Float[np.ndarray, "K 2"]:
-        return (states.configuration @ frame)[:, :2, 2]
-
-    def bodies(states: Orbit) -> Bodies:
-        g = states.configuration @ frame
-        outlines = [[part @ pose[:2, :2].T + pose[:2, 2] for part in outline] for pose in g]
-        return Bodies(g[:, :2, 2], g[:, :2, 0], outlines, radius, 1.0)
-
-    return _draw_in_plane(axes, orbit, parts, points, bodies)
+    radius = max(float(np.linalg.norm(corners, axis=1).max()) for corners in outline)
+    motions: list[Motion] = []
+    for part in parts:
+        g = part.frames.configuration @ frame
+        outlines = [[corners @ pose[:2, :2].T + pose[:2, 2] for corners in outline] for pose in g]
+        bodies = Bodies(g[:, :2, 2], g[:, :2, 0], outlines, radius, 1.0)
+        motions.append((part, (part.path.configuration @ frame)[:, :2, 2], bodies))
+    return _draw_in_plane(axes, orbit, motions)
 
 
 def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a path in two coordinates, with the outline of the system or as a point; return what shows a frame."""
-    if not track.is_place:
-        look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
-        axes.text(0.99, 0.01, track.names[0], ha="right", **look)
-        axes.text(0.01, 0.99, track.names[1], va="top", **look)
     points = track.points(orbit)
-
-    def bodies(states: AbstractOrbit) -> Bodies | None:
-        return bodies_of(orbit, points, states) if track.is_place else None
-
-    return _draw_in_plane(axes, orbit, parts, track.points, bodies, is_place=track.is_place)
+    bodies = [bodies_of(orbit, points, part.frames) if track.is_place else None for part in parts]
+    motions = [(part, track.points(part.path), at) for part, at in zip(parts, bodies, strict=True)]
+    return _draw_in_plane(axes, orbit, motions, track)
 
 
 def _axes(system: System) -> Float[np.ndarray, "3 3"]:
@@ -164,15 +152,16 @@ def _axes(system: System) -> Float[np.ndarray, "3 3"]:
     return np.eye(3) if axes is None else axes
 
 
-def _draw_in_plane(
-    axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
-) -> Iterator[Show]:
-    motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
+def _draw_in_plane(axes: Axes, orbit: AbstractOrbit, motions: list[Motion], track: Any = None) -> Iterator[Show]:
+    """Draw motions whose points are places, or those of a track; yield what shows a frame."""
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
-    if is_place:
+    if track is None or track.is_place:
         fit_view(axes, shown)
         axes.set(xlabel="", ylabel="")
     else:
+        look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
+        axes.text(0.99, 0.01, track.names[0], ha="right", **look)
+        axes.text(0.01, 0.99, track.names[1], va="top", **look)
         axes.margins(0.1)
         axes.update_datalim(shown)
         axes.autoscale_view()
@@ -182,7 +171,7 @@ def _draw_in_plane(
     axes.set_axisbelow(True)
     for part, path, at in motions:
         yield draw_trail(axes, orbit, part, path)
-        yield draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at)
+        yield draw_point(axes, part, track.points(part.frames)) if at is None else _draw_outline(axes, part, at)
     theme.legend(axes, loc="best")
 
 
