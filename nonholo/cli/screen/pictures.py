@@ -117,18 +117,17 @@ def draw(orbit: Any, store: Path, suffixes: list[str], *, progress: bool) -> dic
     return paths
 
 
-def _draw_all(orbit: Any, picture: Path, look: dict[str, Any], dpi: float, *, progress: bool) -> list[str]:
-    """Draw every kind that this orbit has, each in a separate file; return their paths, and warn of the others."""
-    paths, others = [], []
+def _draw_all(orbit: Any, picture: Path, look: dict[str, Any], dpi: float, *, progress: bool) -> Iterator[str]:
+    """Draw every kind that this orbit has, each in a separate file; yield their paths, and warn of the others."""
+    others = []
     for kind in kinds():
         path, figure = picture.with_stem(f"{picture.stem}-{kind}"), functools.partial(figure_of, kind, orbit, look)
         try:
-            paths.append(_save(path, figure, dpi, progress=progress, what=f"drawing {kind}"))
+            yield _save(path, figure, dpi, progress=progress, what=f"drawing {kind}")
         except ValueError:
             others.append(kind)
     if others:
         warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} prints the reason.")
-    return paths
 
 
 def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
@@ -173,7 +172,7 @@ def draw_stored_run(store: Path, path: Path, look: dict[str, Any], kind: str, dp
     with store_errors(FAILED), progress_bar("reading", progress):
         orbit = nonholo.load_orbit(store)
     if kind == ALL:
-        return _draw_all(orbit, path, look, dpi, progress=progress)
+        return list(_draw_all(orbit, path, look, dpi, progress=progress))
     with store_errors(FAILED):
         if kind == FILM:
             return [_film(orbit, path, progress=progress, **look)]

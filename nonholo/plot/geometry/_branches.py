@@ -181,7 +181,8 @@ def branches(
         (3, '0: 49°')
     """
     discrete = planar_map("plot.branches(discrete=...)", discrete)[0]
-    on_momenta = _is_over_momenta(discrete, plane)
+    sheet = cast(Sheet, sheet_of(discrete.system))
+    on_momenta = _is_over_momenta(discrete, sheet.has_deltoid, plane)
     values = branching.branches(discrete, momentum=momentum, displacement=displacement)
     if displacement is not None:
         W = np.asarray(displacement, dtype=float)
@@ -191,12 +192,11 @@ def branches(
         over = branching.displacements_over(discrete, momentum)
         W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
-    return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
+    return (_over_momenta if on_momenta else _on_displacements)(axes, sheet, discrete, values, W)
 
 
-def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
+def _is_over_momenta(discrete: Discretization, has_deltoid: bool, plane: str | None) -> bool:
     """Return whether to draw on the plane of momenta."""
-    has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
@@ -206,13 +206,12 @@ def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
     return plane == "momenta"
 
 
-def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
-    curves, level, sheet = [], None, _sheet(discrete)
+def _on_displacements(axes: Axes, sheet: Sheet, discrete: Discretization, values: Branches, W: Any) -> BranchesPicture:
+    curves, level = [], None
     if values.energy > 0:
         curves = [invariant_curve(discrete, values.energy)]
         level = draw_level(axes, sheet, curves[0], label="its energy", color=theme.DISCRETE, linewidth=1.5, zorder=2)
-    real = np.flatnonzero(values.is_real)
-    places = sheet.places(sheet.variety.points(values.displacement[real].real))
+    places = sheet.places(sheet.variety.points(values.displacement[values.is_real].real))
     dots = _dots(axes, values, places, sheet.places(sheet.variety.points(W[None])))
     labels = tuple(_labels(axes, sheet, values, places, places * sheet.inwards(places)))
     theme.write_title(axes, _title(values))
@@ -220,15 +219,14 @@ def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W:
     return BranchesPicture(axes, values, *dots, level, (), labels)
 
 
-def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
-    region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
+def _over_momenta(axes: Axes, sheet: Sheet, discrete: Discretization, values: Branches, W: Any) -> BranchesPicture:
+    region, system = deltoid(discrete), discrete.system
     draw_deltoid(axes, region)
     before, after = system.restrict(maps.discrete_legendre(discrete, W)), system.restrict(values.momentum[0].real)
     here, there = on_plane(system, np.stack([before, after]))
-    real = np.flatnonzero(values.is_real)
-    places = on_plane(system, region.touching(_angles(sheet, values)[real]))
+    places = on_plane(system, region.touching(_angles(sheet, values)[values.is_real]))
     tangents = []
-    for i, place in zip(real, places, strict=True):
+    for i, place in zip(np.flatnonzero(values.is_real), places, strict=True):
         ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
         style: Any = {"linewidth": 1.6} if i == values.principal else {"linewidth": 1.1, "dashes": (5, 3)}
         tangents += axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)
@@ -239,18 +237,13 @@ def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.
     return BranchesPicture(axes, values, *dots, None, tuple(tangents), labels)
 
 
-def _sheet(discrete: Discretization) -> Sheet:
-    return cast(Sheet, sheet_of(discrete.system))
-
-
 def _angles(sheet: Sheet, values: Branches) -> Float[np.ndarray, "B"]:
     return sheet.step_angles(sheet.variety.points(values.displacement.real))
 
 
 def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
     """Draw the values and the present displacement; count the complex values in the legend."""
-    real = np.flatnonzero(values.is_real)
-    is_principal = real == values.principal if values.principal is not None else np.zeros(len(real), dtype=bool)
+    is_principal = np.flatnonzero(values.is_real) == values.principal  # nowhere if it is None
     own, look = theme.own_look(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
     principal = others = None
     if is_principal.any():
