@@ -5,7 +5,7 @@ words which orbits are drawn. No mechanics.
 """
 
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
@@ -210,7 +210,7 @@ _NEAR_CUSP = 0.055  # part of the picture, to either side
 _SIZE, _MARGIN = 0.40, 0.07  # of the enlarged detail, in parts of the picture
 
 
-def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"]) -> Square:
+def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"], names: Sequence[str] = ("$x$", "$y$")) -> Square:
     """Let axes of one scale show the points, as large as their shape allows, with all that they show already."""
     box, square = axes.get_window_extent(), square_about(points)
     wide, extent = max(1.0, box.width / box.height), np.ptp(points, axis=0)
@@ -219,7 +219,7 @@ def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"]) -> Square:
     axes.margins(0.0)
     axes.update_datalim(view.T)
     axes.autoscale_view()
-    axes.set(xlabel="$x$", ylabel="$y$", aspect="equal")
+    axes.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     return view
 
 

@@ -156,8 +156,7 @@ def _draw_in_plane(axes: Axes, orbit: AbstractOrbit, motions: list[Motion], trac
     """Draw motions whose points are places, or those of a track; yield what shows a frame."""
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
     if track is None or track.is_place:
-        fit_view(axes, shown)
-        axes.set(xlabel="", ylabel="")
+        fit_view(axes, shown, ("", ""))
     else:
         look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
         axes.text(0.99, 0.01, track.names[0], ha="right", **look)

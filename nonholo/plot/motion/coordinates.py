@@ -22,9 +22,7 @@ _THIN = 0.35  # shortest side of the box in space, in parts of its longest
 def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) -> Float[np.ndarray, "d 2"]:
     """Set up axes of the plane or of space, with one unit, about the points of a path; return what they show."""
     if len(names) == 2:
-        view = parts.fit_view(axes, points)
-        axes.set(xlabel=names[0], ylabel=names[1])
-        return view
+        return parts.fit_view(axes, points, names)
     square = parts.square_about(points)  # with a margin, no side much shorter than the longest
     half = np.maximum(0.57 * np.ptp(points, axis=0), _THIN * np.ptp(square[0]) / 2)
     limits = square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
