@@ -281,10 +281,9 @@ def _complete(document: dict[str, Any]) -> None:
 def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
     if needs_size(value) and isinstance(own.get(name), list):
         value["size"] = len(own[name])
-    if name in own or start_component(name):
-        return
-    with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[name] = _typical(value)
+    if name not in own and not start_component(name):
+        with contextlib.suppress(ValueError):  # reported as a problem of the design
+            own[name] = _typical(value)
 
 
 def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
@@ -294,10 +293,9 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
         return
     owner, _ = next(iter(parts))
     places = [(owner, component) for component in range(len(parts))]
-    if parts.keys() != set(places):
-        return
-    with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[owner] = [_typical(parts[place]) for place in places]
+    if parts.keys() == set(places):
+        with contextlib.suppress(ValueError):  # reported as a problem of the design
+            own[owner] = [_typical(parts[place]) for place in places]
 
 
 def _typical(value: Any) -> Any:
