@@ -153,10 +153,8 @@ def _live(orbit: Orbit) -> Shown | None:
     """Return the state that a kernel of the page starts from; None where there is no kernel for it."""
     discrete: Any = orbit.motion
     has_map = isinstance(discrete, Discretization) and orbit.branch == "principal" and not orbit.has_impacts.any()
-    if not has_map or orbit.canonical_pose is None:
-        return None
-    kind, step_count = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
-    if kind is None or step_count < 1:
+    kind = _kind(discrete) if has_map else None
+    if kind is None or orbit.canonical_pose is None or (step_count := int(orbit.step[-1] - orbit.step[0])) < 1:
         return None
     steps = min(step_count, MOST_STEPS)
     table = _table(orbit.system, kind, orbit.step[0])

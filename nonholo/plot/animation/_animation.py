@@ -157,25 +157,12 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
 
 def write_film(path: str, figure: Figure, shows: list[Show], total: int, rate: float, progress: Progress) -> None:
     """Write a film with this many frames a second, each drawn in the figure by all of `shows`."""
-    if (codec := _CODECS.get(Path(path).suffix.lower())) is None:
-        _write_gif(path, figure, shows, total, rate, progress)
+    if codec := _CODECS.get(Path(path).suffix.lower()):
+        writer = FFMpegWriter(cast(Any, rate), codec[0], bitrate=-1, extra_args=codec[1])
+        with writer.saving(figure, path, _DPI):
+            for _ in _frames(shows, range(total), progress):
+                writer.grab_frame()
         return
-    with FFMpegWriter(cast(Any, rate), codec[0], bitrate=-1, extra_args=codec[1]).saving(figure, path, _DPI) as writer:
-        for _ in _frames(shows, range(total), progress):
-            writer.grab_frame()
-
-
-def _frames(shows: list[Show], frames: Sequence[int], progress: Progress = None) -> Iterator[int]:
-    """Draw frames one by one, and report each after what is done with it."""
-    for frame in frames:
-        for show in shows:
-            show(frame)
-        yield frame
-        if progress is not None:
-            progress(frame + 1, len(frames))
-
-
-def _write_gif(path: str, figure: Figure, shows: list[Show], total: int, rate: float, progress: Progress) -> None:
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
     size = float(total) * math.prod(canvas.get_width_height())
@@ -189,6 +176,16 @@ def _write_gif(path: str, figure: Figure, shows: list[Show], total: int, rate: f
     look: Any = {"palette": _palette([photograph() for _ in _frames(shows, some)]), "dither": Image.Dither.NONE}
     first, *others = [photograph().quantize(**look) for _ in _frames(shows, range(total), progress)]
     first.save(path, save_all=True, append_images=others, duration=max(20, round(1000 / rate)), loop=0, optimize=True)
+
+
+def _frames(shows: list[Show], frames: Sequence[int], progress: Progress = None) -> Iterator[int]:
+    """Draw frames one by one, and report each after what is done with it."""
+    for frame in frames:
+        for show in shows:
+            show(frame)
+        yield frame
+        if progress is not None:
+            progress(frame + 1, len(frames))
 
 
 def _palette(samples: list[Image.Image]) -> Image.Image:
