@@ -1,6 +1,5 @@
 """The bicycle of Whipple: two frames, two wheels, a rider who holds on."""
 
-import functools
 from typing import Any, NamedTuple
 
 import jax
@@ -9,7 +8,7 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, of_states, wheel
 from nonholo.groups import SO
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -93,7 +92,7 @@ def bicycle(
     yaw = -trail * np.cos(tilt) / wheelbase * steer_rate
     start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, lean_rate, 0.0, steer_rate, *rolling])
     rows = map(np.array, (rear_wheel, rear_frame, front_frame, front_wheel))
-    system = with_numbers(_system, wheelbase, trail, tilt, *rows, gravity)
+    system = _system(wheelbase, trail, tilt, *rows, gravity)
     height = of_states(lambda q, v: _Machine(system.parameters).height(q) + 0.0 * v[0])
     conserved = {"energy": energy_of(system), "height of the front contact": height}
     return Example("bicycle", system, q, start, conserved, time_step=0.02)
@@ -186,7 +185,7 @@ def _pitch(q: Array, vector: Array) -> Array:
     return jnp.stack([cos * x - sin * z, y, sin * x + cos * z])
 
 
-@functools.cache
+@family
 def _system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         machine = _Machine(p)

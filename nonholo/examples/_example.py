@@ -173,10 +173,16 @@ def system_in(coordinates: str, name: str, numbers: Any, *functions: Any, **opti
     return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, parameters=own, **options)
 
 
-def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
-    """Return a system that is made once, with these parameters in its order."""
-    system = make()
-    return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
+def family(make: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a function that makes a system, once for its keywords, take the numbers of the parameters before them."""
+    plain = functools.cache(make)
+
+    @functools.wraps(make)
+    def with_numbers(*numbers: Any, **structure: Any) -> Any:
+        system: Any = plain(**structure)
+        return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
+
+    return with_numbers
 
 
 def scales(where: str, rows: Any) -> tuple[float, ...]:

@@ -1,6 +1,5 @@
 """Balls and disks that roll without sliding: on a plane, in a bowl, on a table that turns, upright and tilted."""
 
-import functools
 from typing import Any
 
 import jax.numpy as jnp
@@ -8,7 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import error, number
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, on_circle, rate, wheel
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
@@ -64,10 +63,10 @@ def chaplygin_ball(
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
-    return Example("chaplygin_ball", with_numbers(_rolling_ball, m, r, inertia), np.eye(4), v, conserved)
+    return Example("chaplygin_ball", _rolling_ball(m, r, inertia), np.eye(4), v, conserved)
 
 
-@functools.cache
+@family
 def _rolling_ball() -> GroupLagrangeDAlembert:
     def action(W: Array, time_step: Array, p: Numbers) -> Array:
         moments = p["inertia"]
@@ -152,7 +151,7 @@ def ball_in_bowl(
         n, dn = _normal(rho, q, v)
         return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
 
-    system = with_numbers(_bowl_system, m, r, J, rho, g)
+    system = _bowl_system(m, r, J, rho, g)
     conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system)}
     return Example("ball_in_bowl", system, q, np.append(velocity, spin * n - rho / r * np.cross(n, dn)), conserved)
 
@@ -168,7 +167,7 @@ def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
 _BOWL = ("mass", "radius", "inertia", "reach", "gravity")
 
 
-@functools.cache
+@family
 def _bowl_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, _, J, rho, g = map(p.__getitem__, _BOWL)
@@ -245,7 +244,7 @@ def ball_on_turntable(
         "y' - kappa x": lambda q, v: v[..., 1] - kappa * q[..., 0],
     }
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
-    return Example("ball_on_turntable", with_numbers(_turntable_system, m, r, J, Omega), q, v, conserved, exact)
+    return Example("ball_on_turntable", _turntable_system(m, r, J, Omega), q, v, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
@@ -263,7 +262,7 @@ def _area(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
     return z * t + velocity * t**2 * quotient
 
 
-@functools.cache
+@family
 def _turntable_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return jnp.array([p["mass"], p["mass"], p["inertia"], p["inertia"]]) @ v**2 / 2
@@ -323,11 +322,11 @@ def rolling_disk(
     """
     q, R, (roll, turn) = np.asarray(configuration), radius, rates
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
+    system = _disk_system(mass, R, rolling_inertia, turning_inertia)
     return Example("rolling_disk", system, q, v, {"theta'": rate(2), "phi'": rate(3)}, on_circle(q, v, R * roll, 3))
 
 
-@functools.cache
+@family
 def _disk_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return jnp.array([p["mass"], p["mass"], p["rolling_inertia"], p["turning_inertia"]]) @ v**2 / 2
@@ -414,7 +413,7 @@ def tilting_disk(
     roll = float(number(f"examples.{name}(rolling=...)", rolling))
 
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
-    system = with_numbers(_tilting_system, m, R, axle, J, g)
+    system = _tilting_system(m, R, axle, J, g)
     circle = on_circle(q, v, R * roll) if steady else None
     return Example(name, system, q, v, {"energy": energy_of(system)}, circle)
 
@@ -422,7 +421,7 @@ def tilting_disk(
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")
 
 
-@functools.cache
+@family
 def _tilting_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, R, axle, J, g = map(p.__getitem__, _TILTING)

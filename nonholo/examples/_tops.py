@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import Forced, SuslovTop
@@ -72,7 +72,7 @@ def rattleback(
         (('x', 'y', 'theta', 'lean', 'pitch'), 5.0)
     """
     q, angles = np.array([0.0, 0.0, 0.0, *tilt]), np.array([spin, *rates])
-    system = with_numbers(_system, np.array(semi_axes), center, np.array(inertia), product, gravity)
+    system = _system(np.array(semi_axes), center, np.array(inertia), product, gravity)
     with double_precision():
         v = np.append(np.asarray(_Boat(system.parameters).rolling(jnp.asarray(q))) @ angles, angles)
     return Example("rattleback", system, q, v, {"energy": energy_of(system)}, time_step=0.002, steps=5000)
@@ -102,7 +102,7 @@ class _Boat(NamedTuple):
         return level @ jnp.cross(self.turns(q).T, self.support(q)[1]).T
 
 
-@functools.cache
+@family
 def _system() -> LagrangeDAlembert:
     exchange = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
