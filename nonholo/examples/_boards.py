@@ -21,7 +21,7 @@ def roller_racer(
     center: float = 0.2,
     joint: float = 1.0,
     handle: float = 0.3,
-    amplitude: float = 0.5,
+    amplitude: float | None = 0.5,
     frequency: float = 2.0,
     configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
     speed: float = 0.0,
@@ -67,6 +67,8 @@ def roller_racer(
         >>> ready = nh.examples.roller_racer()
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'phi'), 3)
+        >>> list(nh.examples.roller_racer(amplitude=None).conserved)
+        ['energy']
     """
     body = mass, inertia, handle_inertia, joint, handle, frequency, center, 0.0, 0.0
     return _of_handle("roller_racer", "Roller racer", body, amplitude, configuration, speed)
@@ -83,7 +85,7 @@ def twistcar(
     handle_center: float = 0.1,
     joint: float = 1.0,
     handle: float = 0.2,
-    amplitude: float = 0.5,
+    amplitude: float | None = 0.5,
     frequency: float = 2.0,
     configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
     speed: float = 0.0,

@@ -7,7 +7,7 @@ import importlib
 import inspect
 import json
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -115,6 +115,8 @@ def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str
 
         def valid_value(name: str, value: Any) -> Any:
             where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
+            if value is None and type(None) in get_args(make.__annotations__.get(name)):
+                return None
             if name in arrays:
                 rows = array(where, value, np.shape(defaults[name]), f"Pass {arrays[name]}.")
                 return scales(where, rows) if name in positive.split() else tuple(rows.tolist())
