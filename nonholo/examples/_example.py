@@ -7,7 +7,7 @@ import importlib
 import inspect
 import json
 from collections.abc import Callable, Mapping
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -114,13 +114,11 @@ def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str
         facts = tuple(map(str.strip, words.partition("\n\n")[0].splitlines()))
 
         def valid_value(name: str, value: Any) -> Any:
-            where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
-            if value is None and type(None) in get_args(make.__annotations__.get(name)):
-                return None
+            where = f"examples.{make.__name__}({name}=...)"
             if name in arrays:
                 rows = array(where, value, np.shape(defaults[name]), f"Pass {arrays[name]}.")
                 return scales(where, rows) if name in positive.split() else tuple(rows.tolist())
-            return _number(where, value, default, name in f"{start} {reals}".split())
+            return _number(where, value, make.__annotations__.get(name), name in f"{start} {reals}".split())
 
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
@@ -140,9 +138,9 @@ def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str
     return decorator
 
 
-def _number(where: str, value: Any, default: Any, real: bool) -> Any:
-    """Return a checked number; an argument whose default is no number is left to its function."""
-    if not isinstance(default, float):
+def _number(where: str, value: Any, kind: Any, real: bool) -> Any:
+    """Return a checked number; an argument that is no number, or may be none, is left to its function."""
+    if kind not in (float, float | None) or (value is None and kind is not float):
         return value
     return float(number(where, value) if real else scale(where, value, _POSITIVE))
 
