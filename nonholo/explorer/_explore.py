@@ -24,7 +24,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
 from nonholo.analysis.planar import blade_axes
-from nonholo.base.checks import MissingExtraError, checked_path, error, flags, needs, number, printable, shown
+from nonholo.base.checks import checked_path, error, flags, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
@@ -450,7 +450,7 @@ class Page(Keeper):
         """The page as a widget, as `mo.ui.anywidget(page.widget)` takes it in marimo; None without anywidget."""
         try:
             from nonholo.explorer._widget import PageWidget
-        except MissingExtraError:
+        except ModuleNotFoundError:  # without anywidget
             return None
         return PageWidget(text=self.text, height=_HEIGHT, state=self.first_state or {})
 
