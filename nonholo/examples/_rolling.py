@@ -53,17 +53,16 @@ def chaplygin_ball(
         >>> ready.conserved["momentum along z"](ready.configuration, ready.body_velocity).round(3)
         np.float64(0.5)
     """
-    m, r, omega = mass, radius, angular_velocity
-    v = np.append(omega, r * np.cross(omega, (0.0, 0.0, 1.0)))
+    v = np.append(angular_velocity, radius * np.cross(angular_velocity, (0.0, 0.0, 1.0)))
 
     def momentum(g: Array, v: Array) -> Array:
         R = g[..., :3, :3]
         gamma, omega = R[..., 2, :], v[..., :3]
-        own = omega * inertia + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
+        own = omega * inertia + mass * radius**2 * np.cross(gamma, np.cross(omega, gamma))
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
-    return Example("chaplygin_ball", _rolling_ball(m, r, inertia), np.eye(4), v, conserved)
+    return Example("chaplygin_ball", _rolling_ball(mass, radius, inertia), np.eye(4), v, conserved)
 
 
 @family
@@ -135,25 +134,25 @@ def ball_in_bowl(
         >>> list(ready.conserved)
         ['spin', 'momentum', 'energy']
     """
-    m, r, J, rho, g = mass, radius, inertia, reach, gravity
     c = np.asarray(place)
-    if not c @ c < rho**2:
-        where, demand = "examples.ball_in_bowl(place=...)", f"be less than {rho:g} from the axis"
+    if not c @ c < reach**2:
+        where, demand = "examples.ball_in_bowl(place=...)", f"be less than {reach:g} from the axis"
         raise error(where, demand, str(c.tolist()), "Start in the bowl.")
     q = np.append(c, np.zeros(3))
-    n, dn = _normal(rho, q, np.append(velocity, np.zeros(3)))
-    kappa = J * r / (rho * (J + m * r**2))
+    n, dn = _normal(reach, q, np.append(velocity, np.zeros(3)))
+    kappa = inertia * radius / (reach * (inertia + mass * radius**2))
 
     def spinning(q: Array, v: Array) -> Array:
-        return (_normal(rho, q, v)[0] * v[..., 2:]).sum(axis=-1)
+        return (_normal(reach, q, v)[0] * v[..., 2:]).sum(axis=-1)
 
     def momentum(q: Array, v: Array) -> Array:
-        n, dn = _normal(rho, q, v)
+        n, dn = _normal(reach, q, v)
         return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
 
-    system = _bowl_system(m, r, J, rho, g)
+    system = _bowl_system(mass, radius, inertia, reach, gravity)
     conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system)}
-    return Example("ball_in_bowl", system, q, np.append(velocity, spin * n - rho / r * np.cross(n, dn)), conserved)
+    turns = spin * n - reach / radius * np.cross(n, dn)
+    return Example("ball_in_bowl", system, q, np.append(velocity, turns), conserved)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
