@@ -133,7 +133,7 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
     """
     with progress_bar("compiling", progress):
         scenario, (discrete, starts) = request.scenario, _try(request)
-    task: Any = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    task: Any = functools.partial(simulate, discrete, progress=progress, **scenario.options())
     text = _scenario_text(request)
     if (size := size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)) and starts:
         with store_errors(USAGE):
@@ -163,7 +163,7 @@ def _try(request: Loaded) -> tuple[Any, bool]:
     """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretize(request)
     with contextlib.suppress(OutcomeError), request.reporting("start"):
-        return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
+        return discrete, len(simulate(discrete, **request.scenario.options() | {"steps": 1, "throw": False})) > 0
     return discrete, False  # off the principal branch: the run proper says so
 
 
@@ -224,9 +224,8 @@ def write_page(source: str, ask: Callable[[], Loaded], output: Path | None, *, b
             orbit = io.load_orbit(source)
     else:
         request = ask()
-        options = {"steps": request.scenario.run.steps, "throw": False} | request.scenario.options()
         with scenario_errors(), reporting_warnings(), store_errors(USAGE):
-            orbit = simulate(_discretize(request), **options)
+            orbit = simulate(_discretize(request), throw=False, **request.scenario.options())
     path = output or Path(mkdtemp(prefix="nonholo-")) / f"{Path(source).stem}.html"
     with store_errors(FAILED):
         explorer.orbit_to_html(orbit, path, overwrite=overwrite)

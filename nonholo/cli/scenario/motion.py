@@ -233,7 +233,7 @@ class Scenario(AbstractScenario):
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""
-        return self.start.model_dump(exclude_none=True) | self.run.model_dump(include={"save_every", "branch"})
+        return self.start.model_dump(exclude_none=True) | self.run.model_dump(include={"steps", "save_every", "branch"})
 
 
 def is_ready(product: Any) -> bool:
