@@ -19,6 +19,7 @@ import nonholo
 from nonholo.base.checks import needs
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by, meanings, suggestion, summary
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import SYSTEMS
 
 Maker = Callable[..., Any]
 _NAME = re.compile(r"(SO|SE|Translations)\((\d{1,4})\)")
@@ -139,13 +140,14 @@ SHORT = {
     "right_invariant": "LRSystem",
 }
 """Kinds that are called by another word than their class."""
+_SYSTEMS: dict[str, Maker] = {each.__name__: each for each in SYSTEMS}
 _NICKNAMES = {"top": "suslov or veselova", "body": "rigid_body", "skate": "sleigh"}
 _OWN: dict[str, Maker] = {}
 
 
 def kinds() -> list[str]:
     """Return every kind of body; those of the examples load JAX."""
-    return [*_OWN, *SHORT, *_systems(), *examples()]
+    return [*_OWN, *SHORT, *_SYSTEMS, *examples()]
 
 
 def nearest_kind(name: str) -> str:
@@ -157,7 +159,7 @@ def nearest_kind(name: str) -> str:
 
 def own_kinds() -> list[str]:
     """Return the kinds of a module of the user's own, and those of systems: a class by one word."""
-    return [*_OWN, *SHORT, *(name for name in _systems() if name not in SHORT.values())]
+    return [*_OWN, *SHORT, *(name for name in _SYSTEMS if name not in SHORT.values())]
 
 
 def body_table(kind: str) -> type[MadeTable]:
@@ -168,15 +170,8 @@ def body_table(kind: str) -> type[MadeTable]:
     """
     if kind in _OWN:
         return table_of(kind, _OWN[kind], kind=True, plain=False)
-    systems, name = _systems(), SHORT.get(kind, kind)
-    return table_of(kind, systems[name] if name in systems else examples()[kind], kind=True)
-
-
-@functools.cache
-def _systems() -> dict[str, Maker]:
-    from nonholo.systems import SYSTEMS
-
-    return {each.__name__: each for each in SYSTEMS}
+    name = SHORT.get(kind, kind)
+    return table_of(kind, _SYSTEMS[name] if name in _SYSTEMS else examples()[kind], kind=True)
 
 
 @functools.cache
@@ -189,7 +184,7 @@ def examples() -> dict[str, Maker]:
 
 def is_example(name: str) -> bool:
     """Return whether a kind starts by itself: an example, or what a user's own function makes."""
-    return name in _OWN or name not in (*SHORT, *_systems())
+    return name in _OWN or name not in (*SHORT, *_SYSTEMS)
 
 
 def import_own(path: Path | None) -> dict[str, Maker]:
