@@ -22,8 +22,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _each in (simulate, sweep, dataset, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite):
-    app.command()(_each)
+_COMMANDS = (simulate, sweep, dataset, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite)
+for _command in _COMMANDS:
+    app.command()(_command)
 
 
 def main() -> None:
