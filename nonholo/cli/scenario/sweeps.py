@@ -217,12 +217,6 @@ class SweepScenario(AbstractScenario):
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 
-    @model_validator(mode="after")
-    def _starts(self) -> Self:
-        if self.start is None and not self.is_family:
-            raise ValueError("`Scenario(start=...)` is missing")
-        return self
-
     @property
     def is_family(self) -> bool:
         """Whether members are made by a function, with their start."""
@@ -312,8 +306,8 @@ def _refusals(scenario: SweepScenario) -> Iterator[tuple[str, str]]:
         yield "design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'
     names = _varied_names(scenario)
     yield from filter(None, (_flaw(scenario, table, name, names[table]) for table, name in entries))
-    if scenario.start is not None and scenario.is_family:
-        yield "start", "is not for sweeps of this body, whose keys have its start"
+    if scenario.is_family == (scenario.start is not None):
+        yield "start", "is not for sweeps of this body, whose keys have its start" if scenario.start else "is missing"
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key, None) is not None:
             yield f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"
