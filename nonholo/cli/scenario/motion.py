@@ -83,19 +83,18 @@ class AbstractForces(Section):
 
     def on(self, system: System) -> System:
         """Return the system under these forces, the system itself without any."""
-        tables = {word: getattr(self, word) for word in (*_CLASSES, "table")}
-        parts: dict[str, Any] = {word: table for word, table in tables.items() if table is not None}
-        for word in filter(_CLASSES.__contains__, parts):  # one with a single argument is written without its name
-            own = parts[word]
-            parts[word] = own.creation if isinstance(own, MadeTable) else _CLASSES[word](own)
-        if not parts:
-            return system
-        for word, part in parts.items():
+        parts = []
+        for word, make in (*_CLASSES.items(), ("table", None)):
+            if (own := getattr(self, word)) is None:
+                continue
+            if make is not None:  # one with a single argument is written without its name
+                own = own.creation if isinstance(own, MadeTable) else make(own)
             try:
-                nonholo.Forced(system, **_acting([part]))
+                nonholo.Forced(system, **_acting([own]))
             except ValueError as failure:
                 raise ValueError(f"`Forces({word}=...)` {_requirement(failure)}") from None
-        return nonholo.Forced(system, **_acting([*parts.values()]), scheme=self.scheme)
+            parts.append(own)
+        return nonholo.Forced(system, **_acting(parts), scheme=self.scheme) if parts else system
 
     def about(self, system: System) -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
