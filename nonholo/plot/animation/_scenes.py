@@ -155,7 +155,7 @@ def _axes(system: System) -> Float[np.ndarray, "3 3"]:
 def _draw_in_plane(axes: Axes, orbit: AbstractOrbit, motions: list[Motion], track: Any = None) -> Iterator[Show]:
     """Draw motions whose points are places, or those of a track; yield what shows a frame."""
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
-    if track is None or track.is_place:
+    if getattr(track, "is_place", True):
         fit_view(axes, shown, ("", ""))
     else:
         look: Any = {"transform": axes.transAxes, "color": theme.QUIET}

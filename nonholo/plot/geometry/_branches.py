@@ -40,7 +40,7 @@ def dress_momenta(axes: Axes, region: Deltoid, title: str) -> None:
     """Name the axes and the region; the corners beside the long cusp are free, for the legend and for words."""
     cusps = on_plane(region.discrete.system, region.cusps)
     look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
-    axes.annotate("3 real values", cusps.T @ [0.4, 0.3, 0.3], **look)
+    axes.annotate("3 real values", tuple(cusps.T @ [0.4, 0.3, 0.3]), **look)
     points_down = bool(cusps[0, 1] < cusps[1, 1])
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
