@@ -1,6 +1,5 @@
 """The bicycle of Whipple: two frames, two wheels, a rider who holds on."""
 
-import functools
 from typing import Any, NamedTuple
 
 import jax
@@ -9,7 +8,7 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, of_states, wheel
 from nonholo.groups import SO
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -89,45 +88,38 @@ def bicycle(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'lean', 'pitch', 'steer', 'rear', 'front'), 5)
     """
-    machine = _Machine(wheelbase, trail, tilt, rear_wheel, rear_frame, front_frame, front_wheel)
     q, v, rolling = np.append(place, np.zeros(5)), speed, (speed / rear_wheel[0], speed / front_wheel[0])
     yaw = -trail * np.cos(tilt) / wheelbase * steer_rate
     start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, lean_rate, 0.0, steer_rate, *rolling])
     rows = map(np.array, (rear_wheel, rear_frame, front_frame, front_wheel))
-    system = with_numbers(_system, wheelbase, trail, tilt, *rows, gravity)
-    height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
+    system = _system(wheelbase, trail, tilt, *rows, gravity)
+    height = of_states(lambda q, v: _Machine(system.parameters).height(q) + 0.0 * v[0])
     conserved = {"energy": energy_of(system), "height of the front contact": height}
     return Example("bicycle", system, q, start, conserved, time_step=0.02)
 
 
 class _Machine(NamedTuple):
-    """The parts of the bicycle, and how they move; vectors in axes of the rear frame or, turned, of the front one."""
+    """A bicycle by its parameters, and how it moves; vectors in axes of the rear frame or, turned, of the front one."""
 
-    wheelbase: Any
-    trail: Any
-    tilt: Any
-    rear: Any
-    frame: Any
-    fork: Any
-    front: Any
+    p: Numbers
 
     @property
     def pivot(self) -> Float[Array, "3"]:
         """Where the steering axis meets the ground, from the rear axle, upright."""
-        return jnp.array([self.wheelbase + self.trail, 0.0, -self.rear[0]])
+        return jnp.array([self.p["wheelbase"] + self.p["trail"], 0.0, -self.p["rear_wheel"][0]])
 
     def of_fork(self, x: Any, z: Any) -> Float[Array, "3"]:
         """Return a point of the upright front frame from the pivot, in its axes."""
-        return self.axes @ jnp.array([x - self.wheelbase - self.trail, 0.0, z])
+        return self.axes @ jnp.array([x - self.p["wheelbase"] - self.p["trail"], 0.0, z])
 
     @property
     def axle(self) -> Float[Array, "3"]:
         """The front axle from the pivot."""
-        return self.of_fork(self.wheelbase, self.front[0])
+        return self.of_fork(self.p["wheelbase"], self.p["front_wheel"][0])
 
     @property
     def axes(self) -> Float[Array, "3 3"]:
-        cos, sin = jnp.cos(self.tilt), jnp.sin(self.tilt)
+        cos, sin = jnp.cos(self.p["tilt"]), jnp.sin(self.p["tilt"])
         return jnp.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
 
     def inertias(self) -> list[Float[Array, "3 3"]]:
@@ -136,8 +128,9 @@ class _Machine(NamedTuple):
         def tensor(xx: Any, yy: Any, zz: Any, xz: Any = 0.0) -> Array:
             return jnp.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
 
-        frame, fork = (tensor(*moments) for _, _, _, *moments in (self.frame, self.fork))
-        rear, front = (tensor(across, axle, across) for _, _, across, axle in (self.rear, self.front))
+        frame, fork = (tensor(*self.p[name][3:]) for name in ("rear_frame", "front_frame"))
+        wheels = (self.p[name][2:] for name in ("rear_wheel", "front_wheel"))
+        rear, front = (tensor(across, axle, across) for across, axle in wheels)
         return [rear, frame, self.axes @ fork @ self.axes.T, front]
 
     def to_fork(self, q: Array, vector: Array) -> Array:
@@ -152,7 +145,7 @@ class _Machine(NamedTuple):
     def motion(self, q: Array, v: Array) -> tuple[Array, Array, Array, Array]:
         """Return the velocity of the rear axle and the turning of the rear frame; of the pivot and the front frame."""
         (ahead, left), lean = _from_heading(q[2], v[:2]), jnp.sin(q[3])
-        r, rise = self.rear[0], jnp.cos(q[3])
+        r, rise = self.p["rear_wheel"][0], jnp.cos(q[3])
         axle = _pitch(q, jnp.stack([ahead + r * lean * v[2], rise * left - r * v[3], -lean * left]))
         omega = _pitch(q, jnp.stack([v[3], v[4] + lean * v[2], rise * v[2]]))
         fork_rate = self.to_fork(q, omega) - v[5] * np.array([0.0, 0.0, 1.0])
@@ -162,12 +155,12 @@ class _Machine(NamedTuple):
         """Return the vertical and the lowest point of the front wheel from its axle, in axes of the front frame."""
         up = self.to_fork(q, self.up(q))
         level = up * np.array([1.0, 0.0, 1.0])
-        return up, -self.front[0] * level / jnp.sqrt(level @ level)
+        return up, -self.p["front_wheel"][0] * level / jnp.sqrt(level @ level)
 
     def height(self, q: Array) -> Array:
         """Return the height of the lowest point of the front wheel."""
         up, low = self.lowest(q)
-        return self.rear[0] * jnp.cos(q[3]) + self.up(q) @ self.pivot + up @ (self.axle + low)
+        return self.p["rear_wheel"][0] * jnp.cos(q[3]) + self.up(q) @ self.pivot + up @ (self.axle + low)
 
     def slip(self, q: Array, v: Array) -> Array:
         """Return the velocities of the contacts: of the rear one two, of the front one along, across and up."""
@@ -176,7 +169,8 @@ class _Machine(NamedTuple):
         contact = pivot + jnp.cross(omega, self.axle + low) + v[7] * jnp.cross(np.array([0.0, 1.0, 0.0]), low)
         along = jnp.stack([up[2], 0.0 * up[1], -up[0]])
         ahead, left = _from_heading(q[2], v[:2])
-        return jnp.stack([ahead - self.rear[0] * v[6], left, along @ contact, contact[1], up @ contact])
+        rolling = ahead - self.p["rear_wheel"][0] * v[6]
+        return jnp.stack([rolling, left, along @ contact, contact[1], up @ contact])
 
 
 def _from_heading(heading: Array, vector: Array) -> Array:
@@ -191,12 +185,12 @@ def _pitch(q: Array, vector: Array) -> Array:
     return jnp.stack([cos * x - sin * z, y, sin * x + cos * z])
 
 
-@functools.cache
+@family
 def _system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        machine = _machine(p)
-        (R, rear, *_), (_, front, *_) = machine.rear, machine.front
-        (x, z, frame, *_), (x_fork, z_fork, fork, *_) = machine.frame, machine.fork
+        machine = _Machine(p)
+        (R, rear, *_), (_, front, *_) = p["rear_wheel"], p["front_wheel"]
+        (x, z, frame, *_), (x_fork, z_fork, fork, *_) = p["rear_frame"], p["front_frame"]
         body, bars, tensors = jnp.array([x, 0.0, z - R]), machine.of_fork(x_fork, z_fork), machine.inertias()
         masses = rear, frame, fork, front
         axle, omega, pivot, fork_rate = machine.motion(q, v)
@@ -211,10 +205,10 @@ def _system() -> LagrangeDAlembert:
         return kinetic - p["gravity"] * (heights + machine.to_fork(q, up) @ (fork * bars + front * machine.axle))
 
     def forms(q: Array, p: Numbers) -> Array:
-        return jax.jacfwd(lambda v: _machine(p).slip(q, v))(jnp.zeros(8))
+        return jax.jacfwd(lambda v: _Machine(p).slip(q, v))(jnp.zeros(8))
 
     def discrete(q: Array, q_next: Array, h: Array, p: Numbers) -> Array:
-        machine = _machine(p)
+        machine = _Machine(p)
         level = machine.slip((q + q_next) / 2, (q_next - q) / h)[:4]
         return jnp.stack([*level, machine.height(q_next) - machine.height(q)])
 
@@ -224,25 +218,20 @@ def _system() -> LagrangeDAlembert:
     return system_in("x y theta lean pitch steer rear front", "Bicycle", numbers, lagrangian, forms, **options)
 
 
-def _machine(p: Numbers) -> _Machine:
-    wheels = "rear_wheel", "rear_frame", "front_frame", "front_wheel"
-    return _Machine(p["wheelbase"], p["trail"], p["tilt"], *map(p.__getitem__, wheels))
-
-
 def _outline(q: Array, p: Numbers) -> list[Array]:
     """Return the rider, the frame, the handlebar, and the wheels where they touch the ground, seen from above."""
-    machine = _machine(p)
+    machine = _Machine(p)
     with double_precision():
         axes, base, hub = map(np.asarray, (machine.axes, machine.pivot, machine.axle))
     lean, pitch, steer = SO(3).exp(np.diag([*q[3:5], -q[5]]))
-    frame, R, w = lean @ pitch, machine.rear[0], machine.wheelbase
+    frame, R, w = lean @ pitch, p["rear_wheel"][0], p["wheelbase"]
     fork, axle = frame @ axes.T @ steer, lean @ (0.0, 0.0, R)
     pivot, across = axle + frame @ base, fork[:, 1]
     low = across * across[2] - (0.0, 0.0, 1.0)
-    contact = pivot + fork @ hub + machine.front[0] * low / np.linalg.norm(low)
-    head = pivot + fork @ (0.0, 0.0, machine.frame[1])
-    x, z, size = machine.frame[0], machine.frame[1] - R, w * np.array([0.12, 0.2])
+    contact = pivot + fork @ hub + p["front_wheel"][0] * low / np.linalg.norm(low)
+    x, top, *_ = p["rear_frame"]
+    head, z, size = pivot + fork @ (0.0, 0.0, top), top - R, w * np.array([0.12, 0.2])
     rider = axle + np.array([[x + size[0] * ahead, size[1] * left, z] for ahead, left in _CORNERS]) @ frame.T
     bars = head + 0.25 * w * np.stack([across, -across])
-    front = wheel((contact[0], contact[1]), 2 * machine.front[0], np.arctan2(-across[0], across[1]), 0.1)
+    front = wheel((contact[0], contact[1]), 2 * p["front_wheel"][0], np.arctan2(-across[0], across[1]), 0.1)
     return [rider[:, :2], np.stack([axle, head])[:, :2], bars[:, :2], wheel((0.0, 0.0), 2 * R, width=0.1), front]

@@ -1,6 +1,5 @@
 """Blades: the knife edge on a slope, and sleighs that a moving mass drives or a spring holds."""
 
-import functools
 from typing import Any
 
 import jax.numpy as jnp
@@ -8,7 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import rate, speed_ahead, wheel
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import ChaplyginSleigh, Forced
@@ -88,10 +87,10 @@ def knife_edge_on_incline(
 
     conserved = {"phi'": rate(2), "u phi' - G sin phi": drive}
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, conserved, exact)
+    return Example(name, _edge_system(mass, inertia, G), q, v, conserved, exact)
 
 
-@functools.cache
+@family
 def _edge_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, J, G = map(p.__getitem__, _EDGE)
@@ -165,10 +164,10 @@ def driven_sleigh(
     body = mass, inertia, moving_mass, frequency, a, ahead, amplitude
     q = np.append(configuration, 0.0)
     v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, amplitude * frequency])
-    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, {})
+    return Example("driven_sleigh", _sleigh_system(*body), q, v, {})
 
 
-@functools.cache
+@family
 def _sleigh_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, J, mu, _, a, d, _ = map(p.__getitem__, _SLEIGH)

@@ -1,6 +1,5 @@
 """Vehicles that turns of joints drive along: roller racer, Twistcar, snakeboard, snake of three links."""
 
-import functools
 from typing import Any
 
 import jax.numpy as jnp
@@ -8,7 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, pair, rate, speed_ahead, turn
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -22,7 +21,7 @@ def roller_racer(
     center: float = 0.2,
     joint: float = 1.0,
     handle: float = 0.3,
-    amplitude: float = 0.5,
+    amplitude: float | None = 0.5,
     frequency: float = 2.0,
     configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
     speed: float = 0.0,
@@ -68,6 +67,8 @@ def roller_racer(
         >>> ready = nh.examples.roller_racer()
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'phi'), 3)
+        >>> list(nh.examples.roller_racer(amplitude=None).conserved)
+        ['energy']
     """
     body = mass, inertia, handle_inertia, joint, handle, frequency, center, 0.0, 0.0
     return _of_handle("roller_racer", "Roller racer", body, amplitude, configuration, speed)
@@ -84,7 +85,7 @@ def twistcar(
     handle_center: float = 0.1,
     joint: float = 1.0,
     handle: float = 0.2,
-    amplitude: float = 0.5,
+    amplitude: float | None = 0.5,
     frequency: float = 2.0,
     configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
     speed: float = 0.0,
@@ -146,12 +147,12 @@ def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place:
     turning = 0.5 if amplitude is None else amplitude * body[5]
     heading = -body[4] * turning / (body[3] + body[4])
     q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
-    system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
+    system = _handle_system(*body, amplitude or 0.0, title=title, is_free=amplitude is None)
     conserved = {"energy": energy_of(system)} if amplitude is None else {}
     return Example(name, system, q, v, conserved)
 
 
-@functools.cache
+@family
 def _handle_system(title: str, is_free: bool) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         cos, sin, turning = jnp.cos(q[2]), jnp.sin(q[2]), v[2] + v[3]
@@ -248,10 +249,10 @@ def snakeboard(
         return speed_ahead(q, v) * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "theta' + psi'": spin, "momentum along the constraint": momentum}
-    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, conserved)
+    return Example("snakeboard", _board_system(m, r, J0, wheel_inertia), q, v, conserved)
 
 
-@functools.cache
+@family
 def _board_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, r, J0, J1 = map(p.__getitem__, _BOARD)
@@ -334,11 +335,11 @@ def snake(
     rows = np.stack([sign * np.sin(a), -sign * half * (1 + np.cos(a))], axis=1)
     u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
-    system = with_numbers(_snake_system, half, mass, inertia)
+    system = _snake_system(half, mass, inertia)
     return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system)})
 
 
-@functools.cache
+@family
 def _snake_system() -> LagrangeDAlembert:
     def links(q: Array, half: Any) -> tuple[Array, Array, Array]:
         """Return the headings of the links, and matrices from velocities to those of their middles along x and y."""

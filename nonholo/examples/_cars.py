@@ -1,6 +1,5 @@
 """Vehicles with driven or steered wheels: the car, the robot on two wheels, the tractor with trailers."""
 
-import functools
 from typing import Any
 
 import jax.numpy as jnp
@@ -8,7 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, ready, scales, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, scales, system_in
 from nonholo.examples._formulas import energy_of, on_circle, pair, rate, speed_ahead, turn, wheel
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -81,11 +80,11 @@ def kinematic_car(
         return speed_ahead(q, v) * np.sqrt(m + Jw / R**2 + J / ell**2 * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "momentum along the constraint": momentum}
-    system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
+    system = _car_system(m, J, ell, R, Jw, steering_inertia)
     return Example("kinematic_car", system, q, v, conserved, None if turn else on_circle(q, v, u))
 
 
-@functools.cache
+@family
 def _car_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, J, _, _, Jw, Js = map(p.__getitem__, _CAR)
@@ -193,7 +192,7 @@ def two_wheeled_robot(
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
     motors = torques if callable(torques) else None
     driving = () if free else (d,) if motors else (d, _torques(torques))
-    system = with_numbers(functools.partial(_robot_system, motors, free), m, J, ell, c, R, Jw, *driving)
+    system = _robot_system(m, J, ell, c, R, Jw, *driving, motors=motors, is_free=free)
     return Example("two_wheeled_robot", system, q, v, conserved)
 
 
@@ -206,7 +205,7 @@ def _torques(value: Any) -> Array:
     return array(where, (0.0, 0.0) if value is None else value, (2,), remedy)
 
 
-@functools.cache
+@family
 def _robot_system(motors: Any, is_free: bool) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, J, ell, _, _, Jw = map(p.__getitem__, _ROBOT)
@@ -298,13 +297,11 @@ def trailers(
     q = np.append(place, headings)
     v = np.array([u * np.cos(headings[0]), u * np.sin(headings[0]), *rates])
 
-    system = with_numbers(
-        functools.partial(_trailer_system, n), np.array(d), mass, inertia, trailer_mass, trailer_inertia
-    )
+    system = _trailer_system(np.array(d), mass, inertia, trailer_mass, trailer_inertia, n=n)
     return Example("trailers", system, q, v, {"theta'": rate(2), "energy": energy_of(system)})
 
 
-@functools.cache
+@family
 def _trailer_system(n: int) -> LagrangeDAlembert:
     ones, zeros, follows = np.ones((n, 1)), np.zeros((n, 1)), np.tril(np.ones((n, n)))[:, 1:]
 

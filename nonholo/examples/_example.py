@@ -114,11 +114,11 @@ def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str
         facts = tuple(map(str.strip, words.partition("\n\n")[0].splitlines()))
 
         def valid_value(name: str, value: Any) -> Any:
-            where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
+            where = f"examples.{make.__name__}({name}=...)"
             if name in arrays:
                 rows = array(where, value, np.shape(defaults[name]), f"Pass {arrays[name]}.")
                 return scales(where, rows) if name in positive.split() else tuple(rows.tolist())
-            return _number(where, value, default, name in f"{start} {reals}".split())
+            return _number(where, value, make.__annotations__.get(name), name in f"{start} {reals}".split())
 
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
@@ -138,9 +138,9 @@ def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str
     return decorator
 
 
-def _number(where: str, value: Any, default: Any, real: bool) -> Any:
-    """Return a checked number; an argument whose default is no number is left to its function."""
-    if not isinstance(default, float):
+def _number(where: str, value: Any, kind: Any, real: bool) -> Any:
+    """Return a checked number; an argument that is no number, or may be none, is left to its function."""
+    if kind not in (float, float | None) or (value is None and kind is not float):
         return value
     return float(number(where, value) if real else scale(where, value, _POSITIVE))
 
@@ -173,10 +173,16 @@ def system_in(coordinates: str, name: str, numbers: Any, *functions: Any, **opti
     return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, parameters=own, **options)
 
 
-def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
-    """Return a system that is made once, with these parameters in its order."""
-    system = make()
-    return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
+def family(make: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a function that makes a system, once for its keywords, take the numbers of the parameters before them."""
+    plain = functools.cache(make)
+
+    @functools.wraps(make)
+    def with_numbers(*numbers: Any, **structure: Any) -> Any:
+        system: Any = plain(**structure)
+        return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
+
+    return with_numbers
 
 
 def scales(where: str, rows: Any) -> tuple[float, ...]:

@@ -1,13 +1,11 @@
 """Points: the nonholonomic particle, and oscillators coupled by a constraint, of which one is chaotic."""
 
-import functools
-
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import bounded_count
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, rate
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -62,10 +60,10 @@ def particle(
 
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     v = np.array([a, b, y0 * a])
-    return Example("particle", with_numbers(_particle_system, mass), q, v, conserved, exact)
+    return Example("particle", _particle_system(mass), q, v, conserved, exact)
 
 
-@functools.cache
+@family
 def _particle_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return p["mass"] * (v @ v) / 2
@@ -111,11 +109,11 @@ def chaotic_quartic_oscillator(*, pairs: int = 3, coupling: float = 1.0) -> Exam
     q = np.concatenate([[0.5], y, z])
     v = np.concatenate([[-y @ z_rates], np.zeros(n), z_rates])
 
-    system = with_numbers(functools.partial(_quartic, n), coupling)
+    system = _quartic(coupling, n=n)
     return Example("chaotic_quartic_oscillator", system, q, v, {"energy": energy_of(system)})
 
 
-@functools.cache
+@family
 def _quartic(n: int) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         y, z = q[1 : n + 1], q[n + 1 :]
@@ -169,12 +167,12 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         if asymmetry
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
-    system = with_numbers(functools.partial(_gearbox, asymmetry == 0), asymmetry)
+    system = _gearbox(asymmetry, is_reversible=asymmetry == 0)
     conserved = {"energy": energy_of(system), "energy of the pendulum": pendulum}
     return Example("non_reversible", system, q, v, conserved, facts=facts)
 
 
-@functools.cache
+@family
 def _gearbox(is_reversible: bool) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return (v @ v - q[0] ** 2 - q[1] ** 2) / 2 + jnp.cos(q[2]) - p["asymmetry"] / 2 * jnp.sin(2 * q[2])

@@ -1,6 +1,5 @@
 """Balls and disks that roll without sliding: on a plane, in a bowl, on a table that turns, upright and tilted."""
 
-import functools
 from typing import Any
 
 import jax.numpy as jnp
@@ -8,7 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import error, number
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of, on_circle, rate, wheel
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
@@ -54,20 +53,19 @@ def chaplygin_ball(
         >>> ready.conserved["momentum along z"](ready.configuration, ready.body_velocity).round(3)
         np.float64(0.5)
     """
-    m, r, omega = mass, radius, angular_velocity
-    v = np.append(omega, r * np.cross(omega, (0.0, 0.0, 1.0)))
+    v = np.append(angular_velocity, radius * np.cross(angular_velocity, (0.0, 0.0, 1.0)))
 
     def momentum(g: Array, v: Array) -> Array:
         R = g[..., :3, :3]
         gamma, omega = R[..., 2, :], v[..., :3]
-        own = omega * inertia + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
+        own = omega * inertia + mass * radius**2 * np.cross(gamma, np.cross(omega, gamma))
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
-    return Example("chaplygin_ball", with_numbers(_rolling_ball, m, r, inertia), np.eye(4), v, conserved)
+    return Example("chaplygin_ball", _rolling_ball(mass, radius, inertia), np.eye(4), v, conserved)
 
 
-@functools.cache
+@family
 def _rolling_ball() -> GroupLagrangeDAlembert:
     def action(W: Array, time_step: Array, p: Numbers) -> Array:
         moments = p["inertia"]
@@ -136,25 +134,25 @@ def ball_in_bowl(
         >>> list(ready.conserved)
         ['spin', 'momentum', 'energy']
     """
-    m, r, J, rho, g = mass, radius, inertia, reach, gravity
     c = np.asarray(place)
-    if not c @ c < rho**2:
-        where, demand = "examples.ball_in_bowl(place=...)", f"be less than {rho:g} from the axis"
+    if not c @ c < reach**2:
+        where, demand = "examples.ball_in_bowl(place=...)", f"be less than {reach:g} from the axis"
         raise error(where, demand, str(c.tolist()), "Start in the bowl.")
     q = np.append(c, np.zeros(3))
-    n, dn = _normal(rho, q, np.append(velocity, np.zeros(3)))
-    kappa = J * r / (rho * (J + m * r**2))
+    n, dn = _normal(reach, q, np.append(velocity, np.zeros(3)))
+    kappa = inertia * radius / (reach * (inertia + mass * radius**2))
 
     def spinning(q: Array, v: Array) -> Array:
-        return (_normal(rho, q, v)[0] * v[..., 2:]).sum(axis=-1)
+        return (_normal(reach, q, v)[0] * v[..., 2:]).sum(axis=-1)
 
     def momentum(q: Array, v: Array) -> Array:
-        n, dn = _normal(rho, q, v)
+        n, dn = _normal(reach, q, v)
         return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
 
-    system = with_numbers(_bowl_system, m, r, J, rho, g)
+    system = _bowl_system(mass, radius, inertia, reach, gravity)
     conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system)}
-    return Example("ball_in_bowl", system, q, np.append(velocity, spin * n - rho / r * np.cross(n, dn)), conserved)
+    turns = spin * n - reach / radius * np.cross(n, dn)
+    return Example("ball_in_bowl", system, q, np.append(velocity, turns), conserved)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
@@ -168,7 +166,7 @@ def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
 _BOWL = ("mass", "radius", "inertia", "reach", "gravity")
 
 
-@functools.cache
+@family
 def _bowl_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, _, J, rho, g = map(p.__getitem__, _BOWL)
@@ -245,7 +243,7 @@ def ball_on_turntable(
         "y' - kappa x": lambda q, v: v[..., 1] - kappa * q[..., 0],
     }
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
-    return Example("ball_on_turntable", with_numbers(_turntable_system, m, r, J, Omega), q, v, conserved, exact)
+    return Example("ball_on_turntable", _turntable_system(m, r, J, Omega), q, v, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
@@ -263,7 +261,7 @@ def _area(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
     return z * t + velocity * t**2 * quotient
 
 
-@functools.cache
+@family
 def _turntable_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return jnp.array([p["mass"], p["mass"], p["inertia"], p["inertia"]]) @ v**2 / 2
@@ -323,11 +321,11 @@ def rolling_disk(
     """
     q, R, (roll, turn) = np.asarray(configuration), radius, rates
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
+    system = _disk_system(mass, R, rolling_inertia, turning_inertia)
     return Example("rolling_disk", system, q, v, {"theta'": rate(2), "phi'": rate(3)}, on_circle(q, v, R * roll, 3))
 
 
-@functools.cache
+@family
 def _disk_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         return jnp.array([p["mass"], p["mass"], p["rolling_inertia"], p["turning_inertia"]]) @ v**2 / 2
@@ -414,7 +412,7 @@ def tilting_disk(
     roll = float(number(f"examples.{name}(rolling=...)", rolling))
 
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
-    system = with_numbers(_tilting_system, m, R, axle, J, g)
+    system = _tilting_system(m, R, axle, J, g)
     circle = on_circle(q, v, R * roll) if steady else None
     return Example(name, system, q, v, {"energy": energy_of(system)}, circle)
 
@@ -422,7 +420,7 @@ def tilting_disk(
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")
 
 
-@functools.cache
+@family
 def _tilting_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         m, R, axle, J, g = map(p.__getitem__, _TILTING)

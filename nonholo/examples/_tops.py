@@ -1,14 +1,14 @@
 """Bodies that turn on a point or on the floor: the rattleback, or celt, a boat that turns one way only; a heavy top."""
 
 import functools
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, Numbers, ready, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, family, ready, system_in
 from nonholo.examples._formulas import energy_of
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import Forced, SuslovTop
@@ -71,26 +71,24 @@ def rattleback(
         >>> ready.coordinates, ready.body_velocity[2].item()
         (('x', 'y', 'theta', 'lean', 'pitch'), 5.0)
     """
-    boat, q, angles = _Boat(semi_axes, center), np.array([0.0, 0.0, 0.0, *tilt]), np.array([spin, *rates])
-    system = with_numbers(_system, np.array(semi_axes), center, np.array(inertia), product, gravity)
+    q, angles = np.array([0.0, 0.0, 0.0, *tilt]), np.array([spin, *rates])
+    system = _system(np.array(semi_axes), center, np.array(inertia), product, gravity)
     with double_precision():
-        v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
-    conserved = {"energy": energy_of(system)}
-    return Example("rattleback", system, q, v, conserved, time_step=0.002, steps=5000)
+        v = np.append(np.asarray(_Boat(system.parameters).rolling(jnp.asarray(q))) @ angles, angles)
+    return Example("rattleback", system, q, v, {"energy": energy_of(system)}, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):
-    """The ellipsoid, and how it rolls."""
+    """The ellipsoid by its parameters, and how it rolls."""
 
-    axes: Any
-    low: Any
+    p: Numbers
 
     def support(self, q: Array) -> tuple[Array, Array, Array]:
         """Return the height of the center of mass, its gradient by the vertical, and the vertical, in body axes."""
         (lean, rise), (sin, cos) = (jnp.sin(q[3]), jnp.cos(q[3])), (jnp.sin(q[4]), jnp.cos(q[4]))
-        up, D = jnp.stack([-sin * rise, lean, cos * rise]), jnp.asarray(self.axes) ** 2
+        up, D, low = jnp.stack([-sin * rise, lean, cos * rise]), jnp.asarray(self.p["semi_axes"]) ** 2, self.p["center"]
         width = jnp.sqrt(up @ (D * up))
-        return width - self.low * up[2], D * up / width - self.low * np.array([0.0, 0.0, 1.0]), up
+        return width - low * up[2], D * up / width - low * np.array([0.0, 0.0, 1.0]), up
 
     def turns(self, q: Array) -> Array:
         """Return the angular velocities of one unit of each rate of an angle, as columns in body axes."""
@@ -104,12 +102,12 @@ class _Boat(NamedTuple):
         return level @ jnp.cross(self.turns(q).T, self.support(q)[1]).T
 
 
-@functools.cache
+@family
 def _system() -> LagrangeDAlembert:
     exchange = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        boat, tensor = _boat(p), p["inertia"] * np.eye(3) + p["product"] * exchange
+        boat, tensor = _Boat(p), p["inertia"] * np.eye(3) + p["product"] * exchange
         height, gradient, up = boat.support(q)
         omega = boat.turns(q) @ v[2:]
         velocity = jnp.stack([v[0], v[1], gradient @ jnp.cross(up, omega)])
@@ -117,15 +115,11 @@ def _system() -> LagrangeDAlembert:
 
     def forms(q: Array, p: Numbers) -> Array:
         cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
-        return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _boat(p).rolling(q)], axis=1)
+        return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _Boat(p).rolling(q)], axis=1)
 
     numbers = {"semi_axes": np.ones(3), "center": 1.0, "inertia": np.ones(3), "product": 0.0, "gravity": 1.0}
     names = "x y theta lean pitch"
     return system_in(names, "Rattleback", numbers, lagrangian, forms, heading="theta", outline=_outline)
-
-
-def _boat(p: Numbers) -> _Boat:
-    return _Boat(p["semi_axes"], p["center"])
 
 
 def _outline(_: Array, p: Numbers) -> list[Array]:

@@ -16,7 +16,7 @@ import webbrowser
 from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, cast
+from typing import Annotated, Any, Literal, TypeAlias, cast
 
 import jinja2
 import numpy as np
@@ -24,7 +24,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
 from nonholo.analysis.planar import blade_axes
-from nonholo.base.checks import MissingExtraError, checked_path, error, flags, needs, number, printable, shown
+from nonholo.base.checks import checked_path, error, flags, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
@@ -40,12 +40,7 @@ from nonholo.systems import AbstractSystem, ChaplyginSleigh, Forced, Friction, G
 KINDS = tuple(FLAT_RUNS)
 """The runs of the bodies that have a kernel for the page; of a continuous motion where there is no closed form."""
 
-_WIDE_KINDS = {"top4", "flow4"}
-
-
-def kinds_beside(kind: str) -> list[str]:
-    """Return the kinds of one page, and of its ready motions: those in the plane and in space, or the others."""
-    return [each for each in KINDS if (each in _WIDE_KINDS) == (kind in _WIDE_KINDS)]
+_WIDE_KINDS = {"top4", "flow4"}  # which a page has alone; the others are of motions in the plane and in space
 
 
 def kernel(body: str) -> bytes:
@@ -124,12 +119,7 @@ def _problem(state: Any) -> str | None:
     return None
 
 
-class Shown(NamedTuple):
-    """The data of a page, its title, and a note on what is shown."""
-
-    data: dict[str, Any]
-    title: str
-    note: str
+Shown: TypeAlias = tuple[dict[str, Any], str, str]  # the data of a page, its title, and a note on what is shown
 
 
 def shown_motion(where: str, value: Any) -> Shown:
@@ -163,10 +153,8 @@ def _live(orbit: Orbit) -> Shown | None:
     """Return the state that a kernel of the page starts from; None where there is no kernel for it."""
     discrete: Any = orbit.motion
     has_map = isinstance(discrete, Discretization) and orbit.branch == "principal" and not orbit.has_impacts.any()
-    if not has_map or orbit.canonical_pose is None:
-        return None
-    kind, step_count = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
-    if kind is None or step_count < 1:
+    kind = _kind(discrete) if has_map else None
+    if kind is None or orbit.canonical_pose is None or (step_count := int(orbit.step[-1] - orbit.step[0])) < 1:
         return None
     steps = min(step_count, MOST_STEPS)
     table = _table(orbit.system, kind, orbit.step[0])
@@ -181,7 +169,7 @@ def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], ta
         return _replay(orbit, _BEYOND)
     preview = replay(orbit, spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": state["kind"], "state": state, "recorded": preview, "table": table}
-    return Shown(data, _name(system), _frame_note(system) + cut)
+    return data, _name(system), _frame_note(system) + cut
 
 
 def _kind(discrete: Discretization) -> str | None:
@@ -290,7 +278,7 @@ def _replay(orbit: AbstractOrbit, why: str = "there is no kernel in the page for
     data = {"kind": "replay", "replay": numbers, "momenta": names}
     part = f" {len(states):,} of {len(orbit):,} saved states." if len(states) < len(orbit) else ""
     note = f"A replay of numbers from Python: {why}.{part}{forces}"
-    return Shown(data, _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name, note)
+    return data, _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name, note
 
 
 def force_numbers(forced: Forced) -> dict[str, float] | None:
@@ -462,7 +450,7 @@ class Page(Keeper):
         """The page as a widget, as `mo.ui.anywidget(page.widget)` takes it in marimo; None without anywidget."""
         try:
             from nonholo.explorer._widget import PageWidget
-        except MissingExtraError:
+        except ModuleNotFoundError:  # without anywidget
             return None
         return PageWidget(text=self.text, height=_HEIGHT, state=self.first_state or {})
 
@@ -539,7 +527,8 @@ def orbit_to_html(orbit: Any, path: str | Path, *, overwrite: bool = False) -> N
 def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     """Return the text of a page, in ASCII; what it is given is escaped, and data cannot end their element."""
     outcomes = {int(outcome): (outcome.name, outcome.message) for outcome in Outcome}
-    modules = {} if "replay" in data else {kind: kernel(kind) for kind in kinds_beside(data["kind"])}
+    beside = [kind for kind in KINDS if (kind in _WIDE_KINDS) == (data["kind"] in _WIDE_KINDS)]
+    modules = {} if "replay" in data else {kind: kernel(kind) for kind in beside}
     kernels = {kind: base64.b64encode(gzip.compress(each, mtime=0)).decode() for kind, each in modules.items()}
     content = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
     text = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

@@ -2,11 +2,8 @@
 
 from pathlib import Path
 
-from nonholo.base.checks import needs
-
-with needs("notebook", "nonholo.explorer"):
-    import anywidget
-    import traitlets
+import anywidget
+import traitlets
 
 
 class PageWidget(anywidget.AnyWidget):

@@ -3,9 +3,10 @@
 The quantity that is shown, the colors and names of outcomes, and the scales of axes come first.
 """
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
+import xarray
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
@@ -15,9 +16,6 @@ from matplotlib.ticker import MaxNLocator
 from nonholo.base.checks import choice, error, shown
 from nonholo.base.types import Float
 from nonholo.plot import theme
-
-if TYPE_CHECKING:
-    import xarray
 
 OUTCOME, DRAWN = "outcome", "value of the design"
 _ENDED = {
@@ -45,8 +43,8 @@ class Subject(NamedTuple):
         has_integers: Whether the quantity consists of whole numbers.
     """
 
-    values: "xarray.DataArray"
-    codes: "xarray.DataArray"
+    values: xarray.DataArray
+    codes: xarray.DataArray
     has_integers: bool
 
     @property
@@ -63,8 +61,6 @@ class Subject(NamedTuple):
 
 def subject_of(result: Any, quantity: str | None) -> Subject:
     """Return the quantity of that name, by default the first one of a task that is one number of each member."""
-    import xarray
-
     where = "plot.sweep_map"
     if not isinstance(result, xarray.Dataset) or OUTCOME not in result:
         remedy = "Pass what nh.sweep or nh.load_sweep returned."
@@ -81,19 +77,19 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     return Subject(successes.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
 
 
-def _first_of_the_task(result: "xarray.Dataset", numbers: list[str]) -> str:
+def _first_of_the_task(result: xarray.Dataset, numbers: list[str]) -> str:
     """Return the first name that is one number of each member and no draw; the outcome if there is none."""
     own = [name for name in numbers if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
     return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
 
 
-def label(values: "xarray.DataArray") -> str:
+def label(values: xarray.DataArray) -> str:
     """Return the name of a quantity with its units."""
     units = values.attrs.get("units", "1")
     return str(values.name).replace("_", " ") + ("" if units == "1" else f"  [{units}]")
 
 
-def ends(codes: "xarray.DataArray", *, successful: bool = False) -> Ends:
+def ends(codes: xarray.DataArray, *, successful: bool = False) -> Ends:
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
@@ -182,49 +178,39 @@ _OPAQUE = 600  # dots up to which they are opaque
 _Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
 
-def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str | None, y: str | None) -> _Drawn:
+def _draw_draws(axes: Axes, result: xarray.Dataset, subject: Subject, x: str | None, y: str | None) -> _Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
-        members = _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
-    elif subject.values.name == OUTCOME:
-        members = _outcomes(axes, subject)
-    elif x is not None:
-        members = _dots_over(axes, subject, _number(result, "x", x))
-    else:
-        members = _histogram(axes, subject)
-    theme.legend_above(axes, subject.title)
-    return members
+        return _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
+    if subject.values.name == OUTCOME:
+        return _outcomes(axes, subject)
+    return _histogram(axes, subject) if x is None else _dots_over(axes, subject, _number(result, "x", x))
 
 
-def _number(result: "xarray.Dataset", argument: str, name: str) -> "xarray.DataArray":
-    numbers = [str(names) for names, values in result.data_vars.items() if values.dims == ("member",)]
-    if name not in numbers:
-        names = ", ".join(numbers)
-        where = f"plot.sweep_map({argument}=...)"
-        raise error(where, "be one number of each member", shown(name), f"Choose among {names}.")
-    return result[name]
+def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArray:
+    numbers = tuple(str(names) for names, values in result.data_vars.items() if values.dims == ("member",))
+    return result[choice(f"plot.sweep_map({argument}=...)", name, numbers, "Choose one number of each member.")]
 
 
-def _thin(*arrays: "xarray.DataArray") -> list[np.ndarray]:
+def _thin(*arrays: xarray.DataArray) -> list[np.ndarray]:
     """Return the values of evenly spaced members, of at most this many."""
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
-def _dots_over(axes: Axes, subject: Subject, x: "xarray.DataArray") -> _Drawn:
+def _dots_over(axes: Axes, subject: Subject, x: xarray.DataArray) -> _Drawn:
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thin(x, subject.values, subject.codes)
     good, outcomes = codes == 0, ends(subject.codes)
     members = axes.scatter(across[good], values[good], **theme.own_look(theme.DISCRETE), **_look(across, 0.2))
-    axes.set(xlabel=label(x), xscale=scale_along(across))
-    axes.set(ylabel=label(subject.values), yscale=scale_along(values))
+    axes.set(xlabel=label(x), xscale=scale_along(across), ylabel=label(subject.values), yscale=scale_along(values))
     marks = mark_below(axes, across, codes, outcomes, marker="|")
     key_to(axes, outcomes)
     return members, marks, None
 
 
-def _colored_dots(axes: Axes, subject: Subject, x: "xarray.DataArray", y: "xarray.DataArray") -> _Drawn:
+def _colored_dots(axes: Axes, subject: Subject, x: xarray.DataArray, y: xarray.DataArray) -> _Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thin(x, y, subject.values, subject.codes)
     of_outcome, look = subject.values.name == OUTCOME, _look(across, 0.5)
@@ -236,8 +222,7 @@ def _colored_dots(axes: Axes, subject: Subject, x: "xarray.DataArray", y: "xarra
         good = codes == 0
         members = axes.scatter(across[good], up[good], c=values[good], cmap=theme.TIME, norm=scale_of(subject), **look)
         bar = color_key(axes, members, subject)
-    axes.set(xlabel=label(x), xscale=scale_along(across))
-    axes.set(ylabel=label(y), yscale=scale_along(up))
+    axes.set(xlabel=label(x), xscale=scale_along(across), ylabel=label(y), yscale=scale_along(up))
     key_to(axes, outcomes)
     return members, marks, bar
 
@@ -335,15 +320,19 @@ def sweep_map(
         >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
         ((2, 3), 'inertia')
     """
-    if (subject := subject_of(result, quantity)).codes.dims == ("member",):
-        axes = theme.axes_or_new(axes, (7.2, 5.4))
-        return SweepMap(axes, *_draw_draws(axes, result, subject, x, y))
-    names = [str(name) for name in subject.values.dims]
-    _check_named(names, x, y)
-    free = [name for name in names if subject.values.sizes[name] > 1 and name not in (x, y)]
-    along = _axes_of(free, x, y) or names[:1]  # others may only have one value
+    subject = subject_of(result, quantity)
+    along = [] if subject.codes.dims == ("member",) else _axes_of(subject, x, y)
     axes = theme.axes_or_new(axes, (7.2, 5.4))
-    return _curve(axes, subject, *along) if len(along) == 1 else _map(axes, subject, *along)
+    if along:
+        drawn = (_curve if len(along) == 1 else _map)(axes, subject, *along)
+    else:
+        drawn = _draw_draws(axes, result, subject, x, y)
+    # the rest of the design has one value each
+    coordinates = subject.values.coords.items()
+    single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
+    rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
+    theme.legend_above(axes, ", ".join([subject.title, *rest]))
+    return SweepMap(axes, *drawn)
 
 
 def _check_named(names: list[str], x: str | None, y: str | None) -> None:
@@ -356,17 +345,19 @@ def _check_named(names: list[str], x: str | None, y: str | None) -> None:
         raise error("plot.sweep_map(result=...)", "have an axis for x, and another one for y", got, remedy)
 
 
-def _axes_of(free: list[str], x: str | None, y: str | None) -> list[str]:
-    """Return the axes that are named, or else the first ones that are free."""
-    across = x or (free.pop(0) if free else None)
-    up = y or (free.pop(0) if free and across else None)
-    if free:
-        remedy = f"Pass result.sel({free[0]}=..., method='nearest'), or result.isel({free[0]}=0)."
-        raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(free)}", remedy)
-    return [name for name in (across, up) if name is not None]
+def _axes_of(subject: Subject, x: str | None, y: str | None) -> list[str]:
+    """Return the axes that are named, or else the first ones of those that have several values; at least one."""
+    names = [str(name) for name in subject.values.dims]
+    _check_named(names, x, y)
+    free = (name for name in names if subject.values.sizes[name] > 1 and name not in (x, y))
+    along = [name for name in (x or next(free, None), y or next(free, None)) if name is not None]
+    if more := list(free):
+        remedy = f"Pass result.sel({more[0]}=..., method='nearest'), or result.isel({more[0]}=0)."
+        raise error("plot.sweep_map(result=...)", "have at most two free axes", f"also {', '.join(more)}", remedy)
+    return along or names[:1]
 
 
-def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
+def _map(axes: Axes, subject: Subject, x: str, y: str) -> _Drawn:
     values, codes = (_plane(array, x, y) for array in (subject.values, subject.codes))
     edges = borders(_places(values, x)), borders(_places(values, y))
     outcomes = ends(subject.codes, successful=subject.values.name == OUTCOME)
@@ -381,11 +372,10 @@ def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
     _dress_axis(axes, "x", values, x)
     _dress_axis(axes, "y", values, y)
     key_to(axes, outcomes)
-    _name(axes, subject)
-    return SweepMap(axes, members, marks, bar)
+    return members, marks, bar
 
 
-def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
+def _curve(axes: Axes, subject: Subject, x: str) -> _Drawn:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
     across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
@@ -395,29 +385,20 @@ def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
     _dress_axis(axes, "x", values, x)
     axes.set(ylabel=label(subject.values), yscale=scale_along(values.values))
     key_to(axes, outcomes)
-    _name(axes, subject)
-    return SweepMap(axes, line, marks, None)
+    return line, marks, None
 
 
-def _plane(array: "xarray.DataArray", *names: str) -> "xarray.DataArray":
+def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
     """Return an array along some axes, the first one last, ascending along all."""
     flat = array.squeeze([name for name in array.dims if name not in names])
     return flat.transpose(*reversed(names)).sortby(list(names))
 
 
-def _places(array: "xarray.DataArray", name: str) -> np.ndarray:
+def _places(array: xarray.DataArray, name: str) -> np.ndarray:
     """Return the values along an axis; vectors and matrices are numbered."""
     return np.asarray(array[name].values, dtype=float)
 
 
-def _dress_axis(axes: Axes, side: str, array: "xarray.DataArray", name: str) -> None:
+def _dress_axis(axes: Axes, side: str, array: xarray.DataArray, name: str) -> None:
     scale = "log" if is_geometric(_places(array, name)) else "linear"
     axes.set(**{f"{side}scale": scale, f"{side}label": label(array[name])})
-
-
-def _name(axes: Axes, subject: Subject) -> None:
-    """Write what is shown, and the values that the rest of the design has."""
-    coordinates = subject.values.coords.items()
-    single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
-    rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
-    theme.legend_above(axes, ", ".join([subject.title, *rest]))

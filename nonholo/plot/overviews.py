@@ -20,7 +20,7 @@ from nonholo.plot import theme
 from nonholo.plot.motion import coordinates, spheres, time_series, tracks
 from nonholo.plot.motion.phase_portrait import phase_portrait
 from nonholo.plot.parts import drawable_in_time, finish_page, is_free, new_page, same_space
-from nonholo.plot.sheets import blade_of_system, sheet_of
+from nonholo.plot.sheets import sheet_of, strip_of
 from nonholo.systems import AbstractLLSystem, LLSystem, System
 
 
@@ -61,7 +61,7 @@ def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     if orbit.canonical_pose is None:
         return []
     group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
-    if blade_of_system(orbit.system) is not None:
+    if strip_of(orbit.system) is not None:
         return [Panel(lambda axes: tracks.blade_track(orbit, axes=axes, flow=flow))]
     if group == SO(3):
         return [Panel(functools.partial(_body_axis, orbit, flow))]
@@ -101,7 +101,7 @@ def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    has_heading = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    has_heading = strip_of(orbit.system) is not None and orbit.canonical_pose is not None
     if flow is not None and flow.canonical_pose is None and (has_heading or orbit.system.is_spatial):
         flow = None
     (time_series.heading_and_speed if has_heading else time_series.velocity_components)(orbit, axes, flow)
@@ -210,9 +210,13 @@ def overview(
     for panel, own in zip(panels, axes, strict=True):
         theme.begin(own)
         panel.draw(own)
-    if panels[0].is_timed:
-        axes[0].set_xlabel("time")
-    _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
+        if panel.is_timed:
+            own.set_xlabel("time")
+    timed = [own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed]
+    for own in timed[:-1]:  # the lowest has the times of all
+        own.sharex(timed[-1])
+        own.set_xlabel("")
+        own.tick_params(labelbottom=False)
     return finish_page(figure, name_of(orbit), _facts(orbit), path)
 
 
@@ -225,12 +229,3 @@ def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
     grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
     places = (grid[:, 0], *(grid[row, 1] for row in range(len(others))))
     return [figure.add_subplot(place, projection=each.projection) for place, each in zip(places, panels, strict=True)]
-
-
-def _share_time(panels: list[Axes]) -> None:
-    for axes in panels[:-1]:
-        axes.sharex(panels[-1])
-        axes.set_xlabel("")
-        axes.tick_params(labelbottom=False)
-    for axes in panels[-1:]:
-        axes.set_xlabel("time")

@@ -5,7 +5,7 @@ words which orbits are drawn. No mechanics.
 """
 
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
@@ -210,7 +210,7 @@ _NEAR_CUSP = 0.055  # part of the picture, to either side
 _SIZE, _MARGIN = 0.40, 0.07  # of the enlarged detail, in parts of the picture
 
 
-def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"]) -> Square:
+def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"], names: Sequence[str] = ("$x$", "$y$")) -> Square:
     """Let axes of one scale show the points, as large as their shape allows, with all that they show already."""
     box, square = axes.get_window_extent(), square_about(points)
     wide, extent = max(1.0, box.width / box.height), np.ptp(points, axis=0)
@@ -219,7 +219,7 @@ def fit_view(axes: Axes, points: Float[np.ndarray, "K 2"]) -> Square:
     axes.margins(0.0)
     axes.update_datalim(view.T)
     axes.autoscale_view()
-    axes.set(xlabel="$x$", ylabel="$y$", aspect="equal")
+    axes.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     return view
 
 
@@ -286,7 +286,6 @@ def corner_axes(axes: Axes, track: Float[np.ndarray, "L 2"], view: Square, near:
 _SMOOTH = 1000  # states of a flow, in which a curve has no corners
 _ROUNDING = 1e-12  # relative
 _SEEN = 1e-5  # of the extent of a path
-NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 
 
 def drawable(where: str, orbit: Any) -> Orbit:
@@ -373,23 +372,3 @@ def known_equilibria(system: System) -> Equilibria | None:
     except ValueError:
         return None
     return None if equilibria.others else equilibria
-
-
-def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | None:
-    r"""Return the constant body velocity that a state is close to, up to its size; None if there is none.
-
-    Close means that the sine of the angle to the line of equilibria is small, in the metric of the kinetic energy.
-    """
-    system = orbit.system
-    if (equilibria := known_equilibria(system)) is None or len(equilibria.subspace) == 0:
-        return None
-    velocity, inertia = orbit[state : state + 1].body_velocity[0], np.asarray(system.inertia_operator)
-    if not velocity @ inertia @ velocity > 0:
-        return None
-    if len(equilibria.subspace) == len(system.constraint_subspace):
-        return velocity
-    line = equilibria.subspace[0]
-    along = (velocity @ inertia @ line) / (line @ inertia @ line)
-    across = velocity - along * line
-    near = across @ inertia @ across <= NEAR_EQUILIBRIUM**2 * (velocity @ inertia @ velocity)
-    return along * line if near else None

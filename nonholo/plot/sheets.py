@@ -6,7 +6,7 @@ $(\Delta, \nu)$ of sleighs, whose edges are one upside down, a Moebius band. Poi
 others those of the canonical frame. The drawing on that plane is not decided here.
 """
 
-import dataclasses
+from collections.abc import Iterator
 from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
@@ -24,38 +24,6 @@ from nonholo.plot import theme
 from nonholo.plot.parts import forbidden_axis
 from nonholo.systems import AbstractSystem
 
-
-class Blade(NamedTuple):
-    """The axes of a blade, and what they carry.
-
-    All points of the line across the blade move along it; the contact point is the one nearest to the origin of body
-    coordinates.
-
-    Attributes:
-        frame: The axes at the contact point, the first along the blade, as seen from the user's frame.
-        center: The center of mass (a, b) in these axes.
-    """
-
-    frame: Float[np.ndarray, "3 3"]
-    center: Float[np.ndarray, "2"]
-
-    def poses(self, orbit: Orbit) -> Float[np.ndarray, "K 3 3"]:
-        """Return the axes in the plane."""
-        return orbit.configuration @ self.frame
-
-    def contact(self, orbit: Orbit) -> Float[np.ndarray, "K 2"]:
-        """Return the contact points in the plane."""
-        return self.poses(orbit)[:, :2, 2]
-
-    def heading(self, orbit: Orbit) -> Float[np.ndarray, "K"]:
-        """Return the angle of the blade in the plane, full turns counted."""
-        return orbit.heading + np.arctan2(self.frame[1, 0], self.frame[0, 0])
-
-    def speed(self, orbit: Orbit) -> Float[np.ndarray, "K"]:
-        """Return the velocity of the contact point along the blade."""
-        return orbit.body_velocity @ SE(2).adjoint(SE(2).inverse(self.frame))[1]
-
-
 _ROUNDING = 1e-14
 LEVELS = 9  # curves of one energy, where none are asked for
 
@@ -71,8 +39,7 @@ def runs(inside: np.ndarray) -> list[slice]:
     return [slice(first, last) for first, last in ends if last - first > 1]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class DiscSheet:
+class DiscSheet(NamedTuple):
     """The disc of a top: the radius is the step angle in half-turns, the direction that of the turn.
 
     Attributes:
@@ -81,7 +48,6 @@ class DiscSheet:
         locus_labels: Names of the axes of a momentum locus in space.
         component_names: Names of the components of a body momentum.
         signs: The map from momenta along the rows of the normal form to the plane of momenta.
-        blade: None: it has no blade.
         has_deltoid: Whether three values are real over a region of the plane of momenta.
     """
 
@@ -90,7 +56,6 @@ class DiscSheet:
     locus_labels = ("$P_1$", "$P_2$", "$P_3$")
     component_names = ("P_1", "P_2", "P_3")
     signs = np.array([1.0, 1.0])
-    blade = None
     has_deltoid = False
 
     @property
@@ -157,9 +122,12 @@ def _laid(z: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:
 _TALLEST = 4.0  # height of the strip in translations without turning
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class StripSheet:
-    """The strip of a sleigh."""
+class StripSheet(NamedTuple):
+    """The strip of a sleigh, and where its blade is.
+
+    All points of the line across the blade move along it; the contact point is the one nearest to the origin of body
+    coordinates. The axes at the contact point are `variety.blade`, the first along the blade.
+    """
 
     variety: Strip
     momentum_labels = (r"angular momentum  $\pi = p_\theta + b\,p_1$", r"momentum along the blade  $p_1$")
@@ -173,9 +141,25 @@ class StripSheet:
         return np.diag([self.variety.inertia + self.variety.mass * self.variety.arm**2, self.variety.mass])
 
     @property
-    def blade(self) -> Blade:
-        """The blade."""
-        return Blade(self.variety.blade, np.array([self.variety.arm, -self.variety.across]))
+    def center(self) -> Float[np.ndarray, "2"]:
+        """The center of mass (a, b) in the axes of the blade."""
+        return np.array([self.variety.arm, -self.variety.across])
+
+    def blades(self, orbit: Orbit) -> Float[np.ndarray, "K 3 3"]:
+        """Return the axes of the blade in the plane."""
+        return orbit.configuration @ self.variety.blade
+
+    def contact(self, orbit: Orbit) -> Float[np.ndarray, "K 2"]:
+        """Return the contact points in the plane."""
+        return self.blades(orbit)[:, :2, 2]
+
+    def heading(self, orbit: Orbit) -> Float[np.ndarray, "K"]:
+        """Return the angle of the blade in the plane, full turns counted."""
+        return orbit.heading + np.arctan2(self.variety.blade[1, 0], self.variety.blade[0, 0])
+
+    def speed(self, orbit: Orbit) -> Float[np.ndarray, "K"]:
+        """Return the velocity of the contact point along the blade."""
+        return orbit.body_velocity @ SE(2).adjoint(SE(2).inverse(self.variety.blade))[1]
 
     @property
     def has_deltoid(self) -> bool:
@@ -185,7 +169,7 @@ class StripSheet:
     def facts(self, system: AbstractSystem) -> str:
         """Return m, J, a and b."""
         lengths = [np.sqrt(self.variety.inertia / self.variety.mass), *np.abs(self.variety.frame[:2, 2])]
-        a, b = without_rounding(self.blade.center, max(lengths))
+        a, b = without_rounding(self.center, max(lengths))
         symbols = {"m": self.variety.mass, "J": self.variety.inertia, "a": a, "b": b}
         return ",  ".join(f"${symbol}$ = {value:.4g}" for symbol, value in symbols.items())
 
@@ -193,14 +177,12 @@ class StripSheet:
         """Return angles and translations."""
         return points
 
-    def pieces(self, points: Float[np.ndarray, "K 2"]) -> list[Float[np.ndarray, "L 2"]]:
-        """Return the runs of a curve between the angles -pi and pi, turned over after each full turn."""
-        cut = []
+    def pieces(self, points: Float[np.ndarray, "K 2"]) -> Iterator[Float[np.ndarray, "L 2"]]:
+        """Yield the runs of a curve between the angles -pi and pi, turned over after each full turn."""
         for number in np.unique(np.floor((points[:, 0] + np.pi) / (2 * np.pi)).astype(int)):
             shift, flip = 2 * np.pi * number, (-1) ** int(number)
             inside = (points[:, 0] >= shift - np.pi) & (points[:, 0] <= shift + np.pi)
-            cut += [(points[run] - [shift, 0.0]) * [1.0, flip] for run in runs(inside)]
-        return cut
+            yield from ((points[run] - [shift, 0.0]) * [1.0, flip] for run in runs(inside))
 
     def step_angles(self, points: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K"]:
         r"""Return $\Delta$."""
@@ -266,10 +248,10 @@ def sheet_of(system: AbstractSystem) -> Sheet | None:
     return None if variety is None else (DiscSheet if variety.blade is None else StripSheet)(variety)
 
 
-def blade_of_system(system: AbstractSystem) -> Blade | None:
-    """Return the blade of a sleigh in the plane, under any forces; None for other systems."""
+def strip_of(system: AbstractSystem) -> StripSheet | None:
+    """Return the sheet of a sleigh in the plane, under any forces; None for other systems."""
     sheet = sheet_of(system.inside)
-    return None if sheet is None else sheet.blade
+    return sheet if isinstance(sheet, StripSheet) else None
 
 
 def on_plane(system: AbstractSystem, restricted: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:

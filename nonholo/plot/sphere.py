@@ -1,7 +1,6 @@
 """The unit sphere in orthographic projection, paths, axes and words on it: what lies behind is faded, not hidden."""
 
-import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +18,7 @@ _SHADES = 256
 _BEHIND = 0.22  # opacity of what lies behind the sphere
 
 
-@dataclasses.dataclass(frozen=True)
-class View:
+class View(NamedTuple):
     """An orthographic view of space with e3 upwards, from an azimuth and an elevation in degrees.
 
     Example:
@@ -172,16 +170,6 @@ def draw_path(
     return path, axes.scatter(*flat[order].T, s=18 if sparse else 7, color=faces[order], linewidths=0, zorder=5)
 
 
-def draw_axis(axes: Axes, eye: View, axis: Float[np.ndarray, "3"], color: str) -> None:
-    """Draw a unit vector as an arrow out of the sphere, with the great circle about it dashed."""
-    draw_curve(axes, eye, great_circle(axis), np.array(to_rgb(color)), width=0.9, zorder=2, linestyles=(0, (5, 4)))
-    (tip, pole, foot), depth = eye(np.array([1.26, 1.0, -1.0])[:, None] * axis)
-    axes.plot(*np.stack([foot, pole], axis=1), color=color, linewidth=0.9, alpha=0.45, zorder=2.5)
-    look: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 14}
-    look |= {"color": color, "alpha": float(opacity(depth[:1])[0])}
-    axes.annotate("", tip, xytext=pole, zorder=6, annotation_clip=False, arrowprops=look)
-
-
 def name_beside(axes: Axes, name: str, tip: Float[np.ndarray, "2"], away: Float[np.ndarray, "2"], color: str) -> None:
     """Write beside the tip of an arrow from the center, on the side away from its neighbor or from the center."""
     aside = np.array([-tip[1], tip[0]]) / (np.linalg.norm(tip) or 1.0)
@@ -194,11 +182,16 @@ def name_beside(axes: Axes, name: str, tip: Float[np.ndarray, "2"], away: Float[
 
 
 def draw_named_axes(axes: Axes, eye: View, vectors: list[tuple[Float[np.ndarray, "3"], str, str]]) -> None:
-    """Draw unit vectors with their names and colors, the names away from each other."""
+    """Draw unit vectors as arrows out of the sphere, their great circles dashed, their names away from each other."""
     tips = [eye(1.26 * axis)[0] for axis, _, _ in vectors]
-    for (axis, name, color), tip in zip(vectors, tips, strict=True):
-        draw_axis(axes, eye, axis, color)
-        name_beside(axes, name, tip, away=tip - np.mean(tips, axis=0), color=color)
+    for (axis, name, color), end in zip(vectors, tips, strict=True):
+        draw_curve(axes, eye, great_circle(axis), np.array(to_rgb(color)), width=0.9, zorder=2, linestyles=(0, (5, 4)))
+        (tip, pole, foot), depth = eye(np.array([1.26, 1.0, -1.0])[:, None] * axis)
+        axes.plot(*np.stack([foot, pole], axis=1), color=color, linewidth=0.9, alpha=0.45, zorder=2.5)
+        look: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 14}
+        look |= {"color": color, "alpha": float(opacity(depth[:1])[0])}
+        axes.annotate("", tip, xytext=pole, zorder=6, annotation_clip=False, arrowprops=look)
+        name_beside(axes, name, end, away=end - np.mean(tips, axis=0), color=color)
 
 
 def mark_ends(axes: Axes, eye: View, points: Float[np.ndarray, "L 3"], part: slice, orbit: Orbit) -> None:

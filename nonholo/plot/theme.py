@@ -153,7 +153,7 @@ def in_style(draw: Callable[_P, _R]) -> Callable[_P, _R]:
         look = _valid_look(draw.__name__, {name: value for name, value in choices.items() if value is not None})
         drawing = _Drawing(Look(**{**outer, **look}))
         with matplotlib.style.context(_SHEET), setting(_DRAWING, drawing):
-            _settle(option("dark", None), _SETTINGS["axes.facecolor"])
+            _settle(_SETTINGS["axes.facecolor"])
             _set_fonts(_scale())
             result = draw(*arguments, **keywords)
             _choose_words(drawing)
@@ -184,11 +184,11 @@ def luminance(color: Any) -> float:
     return float(linear @ [0.2126, 0.7152, 0.0722])
 
 
-def _settle(dark: bool | None, paper: Any) -> None:
+def _settle(paper: Any) -> None:
     """Choose the colors for a background; one that is not dark or light enough is replaced."""
     drawing = _DRAWING.get()
     is_dark_paper = luminance(paper) < _DARK
-    drawing.is_dark = is_dark_paper if dark is None else dark
+    drawing.is_dark = option("dark", is_dark_paper)
     drawing.paper = paper if is_dark_paper == drawing.is_dark else _PAPERS[drawing.is_dark]
     ink, gray = (_COLORS[name][drawing.is_dark] for name in ("INK", "MUTED"))
     settings = dict.fromkeys(("figure.facecolor", "axes.facecolor"), drawing.paper) if paper != drawing.paper else {}
@@ -251,7 +251,7 @@ def begin(axes: Axes) -> None:
     figure: Any = axes.get_figure(root=False)
     front, back = to_rgba(axes.get_facecolor()), to_rgb(figure.get_facecolor())
     paper = tuple(front[3] * over + (1 - front[3]) * under for over, under in zip(front, back, strict=False))
-    _settle(option("dark", None), paper)
+    _settle(paper)
     _DRAWING.get().words[axes] = list(axes.texts)
 
 

@@ -71,7 +71,7 @@ def test_the_motion_is_that_of_python(file: Path, rows: tuple[str, ...], expecte
     scenario = load_scenario(str(file), []).scenario
     system = _forced(**expected) if expected else nh.ChaplyginSleigh(2.0, 0.7, 0.4)
     assert scenario.system().is_forced == bool(expected)
-    orbit = nh.simulate(scenario.discretization(), steps=3, **scenario.options())
+    orbit = nh.simulate(scenario.discretization(), **scenario.options() | {"steps": 3})
     other = nh.simulate(nh.discretize(system, 0.05), restricted_velocity=(0.3, 0.4), steps=3)
     assert_same(orbit, other, "momentum", "configuration", "energy")
 
@@ -82,7 +82,7 @@ def test_a_blade_of_a_scenario_yields(file: Path) -> None:
     arguments = [parse_setting("forces={}"), *(parse_setting(f"forces.{each}") for each in settings)]
     arguments.append(parse_setting("start={body_velocity=[0.3, 0.4, 0.0]}"))
     scenario = load_scenario(str(file), arguments).scenario
-    orbit = nh.simulate(scenario.discretization(), steps=9, **scenario.options())
+    orbit = nh.simulate(scenario.discretization(), **scenario.options() | {"steps": 9})
     forced = _forced(potential=GRAVITY, force=nh.Slip([[0.0, 0.0, 1.0]], 0.1, 0.2))
     other = nh.simulate(nh.discretize(forced, 0.05), body_velocity=(0.3, 0.4, 0.0), steps=9)
     assert orbit.body_velocity[:, 2].any()

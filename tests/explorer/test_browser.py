@@ -475,7 +475,7 @@ def _copies_repeat(page: Any, folder: Path) -> None:
     if not is_wide:
         (folder / "copied.toml").write_text(text["toml"])
         scenario = load_scenario(str(folder / "copied.toml"), []).scenario
-        _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
+        _same(page, nh.simulate(scenario.discretization(), **scenario.options()))
 
 
 @pytest.mark.parametrize("view", ["body", "phase", "surface", "energy"])

@@ -51,7 +51,7 @@ def test_state_follows_the_widget() -> None:
     assert page.orbit().time[-1] == 3.5
 
 
-FIRST_STATE: dict[str, Any] = shown_motion("explore(value=...)", SLEIGH).data["state"]
+FIRST_STATE: dict[str, Any] = shown_motion("explore(value=...)", SLEIGH)[0]["state"]
 ODD: dict[str, Any] = {
     "nothing": {},
     "a list": [],

@@ -15,7 +15,7 @@ from plot.runs import MASS_TENSOR, frames_of, top_run
 from stopping import stopped_in
 
 import nonholo as nh
-from nonholo.plot.sheets import blade_of_system, on_plane, plane_inertia, sheet_of
+from nonholo.plot.sheets import on_plane, plane_inertia, sheet_of
 
 
 def test_series_are_the_velocities(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
@@ -211,12 +211,12 @@ def test_ellipses_are_levels_of_the_energy(pair: Pair) -> None:
 @pytest.mark.parametrize("pair", [SAME_AXES["balanced sleigh"], TURNED_SLEIGH], ids=["balanced", "turned"])
 def test_blades_by_their_definition(pair: Pair) -> None:
     """Admissible velocities are along the blade, the contact point is next to the origin, the mass where it is."""
-    system, group = pair.equal, nh.SE(2)
-    blade, tensor = blade_of_system(system), system.homogeneous_mass_tensor
-    velocities = system.constraint_subspace @ group.adjoint(group.inverse(blade.frame)).T
+    system, group, sheet = pair.equal, nh.SE(2), sheet_of(pair.equal)
+    blade, tensor = sheet.variety.blade, system.homogeneous_mass_tensor
+    velocities = system.constraint_subspace @ group.adjoint(group.inverse(blade)).T
     assert np.allclose(velocities[:, 2], 0.0, atol=1e-14)
-    assert np.isclose(blade.frame[:2, 2] @ blade.frame[:2, 1], 0.0, atol=1e-14)
-    assert np.allclose(blade.frame @ [*blade.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
+    assert np.isclose(blade[:2, 2] @ blade[:2, 1], 0.0, atol=1e-14)
+    assert np.allclose(blade @ [*sheet.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
 
 
 def test_a_portrait_takes_orbits_of_an_equal_system() -> None:

@@ -1,16 +1,14 @@
 """`nonholo cite`, `examples`, `new` and `systems`: what there is, and how to cite it; they run nothing."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from typer import Argument, BadParameter, Option, echo
 
+import nonholo
 from nonholo.cli import scenario, screen
 from nonholo.cli.commands.run import Module
 from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors
-
-if TYPE_CHECKING:
-    from nonholo.examples import Example
 
 _ABOUT = "name", "description"
 
@@ -89,7 +87,7 @@ def _commands(name: str) -> str:
     return "\n".join(f"  nonholo {command} {name}" for command in ("simulate", "explore", "new"))
 
 
-def _show(example: "Example") -> None:
+def _show(example: "nonholo.examples.Example") -> None:
     """Print the start, the facts and the conserved quantities of a system, and how to run it."""
     parts: dict[str, list[Any]] = {
         "Start": [

@@ -1,6 +1,7 @@
 """`nonholo paper`: recompute the paper and write its page."""
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -55,20 +56,16 @@ def paper(
         leave(f"{len(failures)} of {len(results)} findings fail: {', '.join(failures)}.", FAILED)
 
 
-def _findings(results: "list[Result]") -> list[tuple[str, ...]]:
-    rows = []
+def _findings(results: "list[Result]") -> Iterator[tuple[str, ...]]:
     for result in results:
         finding, measures = result.entry.finding, result.measured
         numbers = (measures and measures.corrected, measures and measures.printed, finding.tolerance)
         words = ("" if number is None else f"{number:.1e}" for number in numbers)
-        rows.append((finding.label, finding.verdict, *words, "yes" if result.holds else "no", f"{result.seconds:.2f}"))
-    return rows
+        yield finding.label, finding.verdict, *words, "yes" if result.holds else "no", f"{result.seconds:.2f}"
 
 
-def _sections(results: "list[Result]") -> list[tuple[str, ...]]:
-    rows = []
+def _sections(results: "list[Result]") -> Iterator[tuple[str, ...]]:
     for heading in dict.fromkeys(result.entry.section.heading for result in results):
         own = [result for result in results if result.entry.section.heading == heading]
         holding, seconds = sum(result.holds for result in own), sum(result.seconds for result in own)
-        rows.append((heading, str(len(own)), str(holding), f"{seconds:.1f}"))
-    return rows
+        yield heading, str(len(own)), str(holding), f"{seconds:.1f}"

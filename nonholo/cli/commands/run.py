@@ -11,7 +11,6 @@ from nonholo import io
 from nonholo.cli import commands
 from nonholo.cli.screen.errors import USAGE, leave
 
-Scenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file, or a name of `systems` or `examples`.")]
 Steps = Annotated[int | None, Option(metavar="N", help="Instead of run.steps.")]
 TimeStep = Annotated[float | None, Option(metavar="H", help="Instead of run.time_step.")]
 Settings = Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Set a value, in TOML; repeatable.")]
@@ -22,7 +21,7 @@ Quiet = Annotated[bool, Option("--quiet", "-q", help="Print only the path of the
 
 
 def simulate(
-    scenario: Scenario,
+    scenario: Annotated[str, Argument(metavar="SCENARIO", help="A TOML file, or a name of `systems` or `examples`.")],
     output: Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep the run.")] = None,
     steps: Steps = None,
     time_step: TimeStep = None,
@@ -56,12 +55,11 @@ def simulate(
 
 
 Source = Annotated[str, Argument(metavar="SCENARIO | STORE", help="A scenario, or a store of `nonholo simulate`.")]
-Page = Annotated[Path | None, Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 
 
 def explore(
     source: Source = "sleigh",
-    output: Page = None,
+    output: Annotated[Path | None, Option("-o", "--output", metavar="FILE", help="Where to write the page.")] = None,
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
@@ -84,7 +82,6 @@ def explore(
     echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
-SweepScenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one.")]
 SweepStore = Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep it; a new path.")]
 Members = Annotated[float | None, Option(metavar="N", help="About how many, as 1e6; ranges of a grid scale alike.")]
 Scheduler = Annotated[str | None, Option(metavar="HOW", help="threads (default), processes, tcp://HOST:PORT of Dask.")]
@@ -92,7 +89,7 @@ Workers = Annotated[int | None, Option(metavar="N", min=1, help="Threads or proc
 
 
 def sweep(
-    scenario: SweepScenario,
+    scenario: Annotated[str, Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one.")],
     output: SweepStore = None,
     members: Members = None,
     scheduler: Scheduler = None,

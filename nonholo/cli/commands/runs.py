@@ -22,7 +22,7 @@ from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, built_in, effective_text, given_settings, load_scenario, stored_scenario
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.sweeps import SweepScenario, load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import SweepScenario, load_sweep_scenario
 from nonholo.cli.screen import report
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
 from nonholo.cli.screen.pictures import beside, draw, draw_sweep, warn_of_older
@@ -64,8 +64,7 @@ def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overw
             store, ran = run_and_keep(request, output, overwrite=overwrite, progress=progress)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.reason}", FAILED)
-    paths = (beside(store, "png") if wishes.plot else None, beside(store, "gif") if wishes.gif else None)
-    pictures = draw(ran.orbit, *paths, progress=progress)
+    pictures = draw(ran.orbit, store, suffixes, progress=progress)
     warn_of_older(store, pictures)
     _report(request, ran, {"store": str(store), **pictures}, json=json, quiet=quiet)
     if ran.reason:
@@ -134,7 +133,7 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
     """
     with progress_bar("compiling", progress):
         scenario, (discrete, starts) = request.scenario, _try(request)
-    task: Any = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
+    task: Any = functools.partial(simulate, discrete, progress=progress, **scenario.options())
     text = _scenario_text(request)
     if (size := size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)) and starts:
         with store_errors(USAGE):
@@ -164,7 +163,7 @@ def _try(request: Loaded) -> tuple[Any, bool]:
     """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretize(request)
     with contextlib.suppress(OutcomeError), request.reporting("start"):
-        return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
+        return discrete, len(simulate(discrete, **request.scenario.options() | {"steps": 1, "throw": False})) > 0
     return discrete, False  # off the principal branch: the run proper says so
 
 
@@ -225,9 +224,8 @@ def write_page(source: str, ask: Callable[[], Loaded], output: Path | None, *, b
             orbit = io.load_orbit(source)
     else:
         request = ask()
-        options = {"steps": request.scenario.run.steps, "throw": False} | request.scenario.options()
         with scenario_errors(), reporting_warnings(), store_errors(USAGE):
-            orbit = simulate(_discretize(request), **options)
+            orbit = simulate(_discretize(request), throw=False, **request.scenario.options())
     path = output or Path(mkdtemp(prefix="nonholo-")) / f"{Path(source).stem}.html"
     with store_errors(FAILED):
         explorer.orbit_to_html(orbit, path, overwrite=overwrite)
@@ -241,7 +239,7 @@ def sweep_and_keep(request: Loaded[Any], output: Path | None, how: dict[str, Any
     with scenario_errors(), reporting_warnings(), request.reporting():
         task = request.scenario.task()
     scenario, begin = request.scenario, time.perf_counter()
-    text = sweep_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
+    text = effective_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
     again = _is_stopped(output, SWEEP_FORMAT, lambda: text, ["png"] * scenario.output.plot, overwrite=False)
     design, progress = scenario.design.design(), sys.stderr.isatty() and not quiet
     run = functools.partial(ensembles.sweep, task, design, **how, resume=again, progress=progress, scenario=text)

@@ -36,20 +36,18 @@ def info(
         if "scenario" not in attributes:
             leave("This store was not made from a scenario.", FAILED)
         echo(attributes["scenario"], nl=False)
-        return
-    if is_sweep:
+    elif is_sweep:
         screen.report.show_sweep_standing(store, attributes, json=json)
-        return
-    if partly := io.orbits.standing(store):
+    elif partly := io.orbits.standing(store):
         screen.report.show_standing(store, attributes, partly, json=json)
-        return
-    try:
-        orbit, failure = io.load_orbit(store), None
-    except (OSError, ValueError) as caught:
-        orbit, failure = None, caught
-    screen.report.show_provenance(store, attributes, orbit, json=json)
-    if failure:
-        leave(f"Its orbit cannot be loaded. {failure}", FAILED)
+    else:
+        try:
+            orbit, failure = io.load_orbit(store), None
+        except (OSError, ValueError) as caught:
+            orbit, failure = None, caught
+        screen.report.show_provenance(store, attributes, orbit, json=json)
+        if failure:
+            leave(f"Its orbit cannot be loaded. {failure}", FAILED)
 
 
 def export(

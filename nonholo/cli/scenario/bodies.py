@@ -11,16 +11,15 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, WithJsonSchema, create_model, model_validator
 
 import nonholo
 from nonholo.base.checks import needs
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by, meanings, suggestion, summary
-
-if TYPE_CHECKING:
-    from nonholo.groups import AbstractMatrixGroup
+from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems import SYSTEMS
 
 Maker = Callable[..., Any]
 _NAME = re.compile(r"(SO|SE|Translations)\((\d{1,4})\)")
@@ -39,7 +38,7 @@ class GroupTable(Section):
     form: Numbers | None = None
 
 
-def group_of(text: Any) -> "AbstractMatrixGroup":
+def group_of(text: Any) -> AbstractMatrixGroup:
     """Return the group that a scenario names or spans.
 
     Example:
@@ -53,7 +52,7 @@ def group_of(text: Any) -> "AbstractMatrixGroup":
     return factors[0] if len(factors) == 1 else nonholo.ProductGroup(*factors)
 
 
-def _factor(name: str) -> "AbstractMatrixGroup":
+def _factor(name: str) -> AbstractMatrixGroup:
     with contextlib.suppress(ValueError):
         if match := _NAME.fullmatch(name):
             return getattr(nonholo, match[1])(int(match[2]))
@@ -67,8 +66,7 @@ class MadeTable(Section):
     """A table of which something is made, once when it is read, so that the library's refusals are reported."""
 
     make: ClassVar[Maker]
-    others: ClassVar[tuple[Maker, ...]] = ()
-    """Other ways to make the same, of other keys."""
+    ways: ClassVar[tuple[Maker, ...]]  # the same, then others, of other keys
 
     @property
     def keywords(self) -> dict[str, Any]:
@@ -79,13 +77,12 @@ class MadeTable(Section):
     def creation(self) -> Any:
         """The body that the table describes."""
         values = self.keywords
-        ways = (type(self).make, *type(self).others)
-        for make in ways:
+        for make in type(self).ways:
             known_arguments = arguments(make)
             necessary = {name for name, each in known_arguments.items() if each.default is each.empty}
             if necessary <= values.keys() <= known_arguments.keys():
                 return _call(make, {name: group_of(x) if name == "group" else x for name, x in values.items()})
-        words = " or ".join(", ".join(arguments(make)) for make in ways)
+        words = " or ".join(", ".join(arguments(make)) for make in type(self).ways)
         raise ValueError(f"must hold the keys {words}. Got {', '.join(values) or 'none'}")
 
     @model_validator(mode="after")
@@ -103,6 +100,7 @@ def _call(make: Maker, values: dict[str, Any]) -> Any:
         raise ValueError(f"cannot be made of this: {type(failure).__name__}: {failure}") from failure
 
 
+@functools.cache
 def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> type[MadeTable]:
     """Return the table whose keys are the arguments of a class or a function.
 
@@ -112,17 +110,17 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
         kind: Whether a key of the table names it.
         plain: Whether values are numbers, lists of them or groups, as everywhere in the library.
     """
-    others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
+    ways = (make, make.from_inertia) if hasattr(make, "from_inertia") else (make,)
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
-    common = set.intersection(*({*arguments(way)} for way in (make, *others)))
-    for way in (make, *others):
+    common = set.intersection(*({*arguments(way)} for way in ways))
+    for way in ways:
         about = meanings(way)
         for name, each in arguments(way).items():
             shape = Group if name == "group" else Numbers if plain else Any
             meaning = about.get(name, f"As in `{way.__qualname__}`.")
             fields.setdefault(name, (shape, Field(_default_of(each) if name in common else None, description=meaning)))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
-    table.make, table.others = make, others
+    table.make, table.ways = make, ways
     return table
 
 
@@ -142,13 +140,14 @@ SHORT = {
     "right_invariant": "LRSystem",
 }
 """Kinds that are called by another word than their class."""
+_SYSTEMS: dict[str, Maker] = {each.__name__: each for each in SYSTEMS}
 _NICKNAMES = {"top": "suslov or veselova", "body": "rigid_body", "skate": "sleigh"}
 _OWN: dict[str, Maker] = {}
 
 
 def kinds() -> list[str]:
     """Return every kind of body; those of the examples load JAX."""
-    return [*_OWN, *SHORT, *_systems(), *examples()]
+    return [*_OWN, *SHORT, *_SYSTEMS, *examples()]
 
 
 def nearest_kind(name: str) -> str:
@@ -160,7 +159,7 @@ def nearest_kind(name: str) -> str:
 
 def own_kinds() -> list[str]:
     """Return the kinds of a module of the user's own, and those of systems: a class by one word."""
-    return [*_OWN, *SHORT, *(name for name in _systems() if name not in SHORT.values())]
+    return [*_OWN, *SHORT, *(name for name in _SYSTEMS if name not in SHORT.values())]
 
 
 def body_table(kind: str) -> type[MadeTable]:
@@ -169,21 +168,10 @@ def body_table(kind: str) -> type[MadeTable]:
     Raises:
         KeyError: There is none of this name.
     """
-    return table_of(kind, _OWN[kind], kind=True, plain=False) if kind in _OWN else _library_table(kind)
-
-
-@functools.cache
-def _library_table(kind: str) -> type[MadeTable]:
-    systems = _systems()
+    if kind in _OWN:
+        return table_of(kind, _OWN[kind], kind=True, plain=False)
     name = SHORT.get(kind, kind)
-    return table_of(kind, systems[name] if name in systems else examples()[kind], kind=True)
-
-
-@functools.cache
-def _systems() -> dict[str, Maker]:
-    from nonholo.systems import SYSTEMS
-
-    return {each.__name__: each for each in SYSTEMS}
+    return table_of(kind, _SYSTEMS[name] if name in _SYSTEMS else examples()[kind], kind=True)
 
 
 @functools.cache
@@ -196,7 +184,7 @@ def examples() -> dict[str, Maker]:
 
 def is_example(name: str) -> bool:
     """Return whether a kind starts by itself: an example, or what a user's own function makes."""
-    return name in _OWN or name not in (*SHORT, *_systems())
+    return name in _OWN or name not in (*SHORT, *_SYSTEMS)
 
 
 def import_own(path: Path | None) -> dict[str, Maker]:

@@ -91,9 +91,7 @@ def load_scenario(name: str, settings: list[Setting], module: Path | None = None
     take_module(module)
     origin, document = read_document(name, built_in(), settings)
     if "design" in document:
-        raise ScenarioError([Problem(origin.source, "design", f"is for sweeps: nonholo sweep {name}")])
-    for setting in settings:
-        assign(document, setting)
+        raise origin.error(("design", f"is for sweeps: nonholo sweep {name}"))
     complete(document, name, origin)
     return validate(document, Scenario, Path(name).stem, origin)._replace(module=module)
 
@@ -158,12 +156,16 @@ def _directions(document: Document) -> tuple[str, ...] | None:
 
 
 def read_document(name: str, own: dict[str, str], settings: list[Setting]) -> tuple[Origin, Document]:
-    """Return where the scenario of a file or a built-in name under settings comes from, and what the file says."""
+    """Return where the scenario of a file or a built-in name under settings comes from, and what both say."""
     source, text = _text_of(name, own)
     try:
-        return Origin(source, {setting.key: setting.option for setting in settings}), parse_toml(text)
+        document = parse_toml(text)
     except ValueError as failure:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
+    by_table(document)
+    for setting in settings:
+        assign(document, setting)
+    return Origin(source, {setting.key: setting.option for setting in settings}), document
 
 
 def validate(document: Document, model: type[Model], name: str, origin: Origin) -> Loaded[Model]:
@@ -218,10 +220,12 @@ def built_in_titles() -> dict[str, str]:
     return {name: parse_toml(text)["title"] for name, text in built_in().items()}
 
 
-def effective_text(scenario: Scenario) -> str:
-    """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
+def effective_text(scenario: Section) -> str:
+    """Return a scenario as TOML with every value that was in force; running it again repeats the run, or the sweep."""
     document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
-    return toml_text(document["title"], {name: value for name, value in document.items() if isinstance(value, dict)})
+    title, design = document.pop("title"), document.pop("design", {})
+    values = {f"{table}.{name}": x for table, own in design.pop("values", {}).items() for name, x in own.items()}
+    return toml_text(title, {**document, "design": design, "design.values": values})
 
 
 def toml_text(title: str, tables: dict[str, dict[str, Any]]) -> str:
@@ -305,11 +309,9 @@ def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comm
     lines = [f"# [{name}]  # the start of the example, unless this one is given" if as_comments else f"[{name}]"]
     for key, field in table.model_fields.items():
         value = values.get(key, None if field.is_required() else field.default)
-        meaning = field.description or ""
-        if value is None:
-            lines.append(_entry(f"# {key} = ...", f"needed: {meaning}" if field.is_required() else meaning))
-        else:
-            lines.append(_entry(f"{'# ' if as_comments else ''}{key} = {as_toml(value)}", meaning))
+        line = f"# {key} = ..." if value is None else f"{'# ' if as_comments else ''}{key} = {as_toml(value)}"
+        needed = "needed: " if value is None and field.is_required() else ""
+        lines.append(_entry(line, needed + (field.description or "")))
     return "\n".join(lines)
 
 

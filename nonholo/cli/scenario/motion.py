@@ -16,10 +16,7 @@ from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import MadeTable, Maker, arguments, body_table, is_example, nearest_kind, table_of
 from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind, checked_by, summary
 from nonholo.groups import components_of
-
-if TYPE_CHECKING:
-    from nonholo.discrete import Discretization
-    from nonholo.systems import System
+from nonholo.systems import System
 
 _KINDS = (nonholo.Gravity, nonholo.Linear, nonholo.Spring, nonholo.Friction, nonholo.Slip)
 _CLASSES: dict[str, Maker] = {make.__name__.lower(): make for make in _KINDS}
@@ -84,30 +81,22 @@ class AbstractForces(Section):
     table: Numbers | None = None
     scheme: Literal["energy", "variational"] | None = None
 
-    def on(self, system: "System") -> "System":
+    def on(self, system: System) -> System:
         """Return the system under these forces, the system itself without any."""
-        tables = {word: getattr(self, word) for word in (*_CLASSES, "table")}
-        parts: dict[str, Any] = {word: table for word, table in tables.items() if table is not None}
-        for word in filter(_CLASSES.__contains__, parts):  # one with a single argument is written without its name
-            own = parts[word]
-            parts[word] = own.creation if isinstance(own, MadeTable) else _CLASSES[word](own)
-        if not parts:
-            return system
-        for word, part in parts.items():
+        parts = []
+        for word, make in (*_CLASSES.items(), ("table", None)):
+            if (own := getattr(self, word)) is None:
+                continue
+            if make is not None:  # one with a single argument is written without its name
+                own = own.creation if isinstance(own, MadeTable) else make(own)
             try:
-                nonholo.Forced(system, **_acting([part]))
+                nonholo.Forced(system, **_acting([own]))
             except ValueError as failure:
                 raise ValueError(f"`Forces({word}=...)` {_requirement(failure)}") from None
-        return nonholo.Forced(system, **_acting([*parts.values()]), scheme=self.scheme)
+            parts.append(own)
+        return nonholo.Forced(system, **_acting(parts), scheme=self.scheme) if parts else system
 
-    def check(self, system: "System", steps: int) -> None:
-        """Refuse forces that cannot act on a system, or that end before a run does."""
-        self.on(system)
-        if self.table is not None and len(self.table) < steps:
-            got = f"{len(self.table)}. Add rows, or take fewer steps"
-            raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
-
-    def about(self, system: "System") -> dict[str, str]:
+    def about(self, system: System) -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
         if self.table is None:
             return {}
@@ -211,20 +200,25 @@ class AbstractScenario(Section):
     @field_validator("forces")
     @classmethod
     def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
+        """Refuse forces that cannot act on the body, or that end before the run does."""
         if {"body", "run"} <= rest.data.keys():
-            forces.check(moving(rest.data["body"].creation), rest.data["run"].steps)
+            forces.on(moving(rest.data["body"].creation))
+            steps, table = rest.data["run"].steps, forces.table
+            if table is not None and len(table) < steps:
+                got = f"{len(table)}. Add rows, or take fewer steps"
+                raise ValueError(f"`Forces(table=...)` must have a row for each of {steps} steps. Got {got}")
         return forces
 
-    def system(self) -> "System":
+    def system(self) -> System:
         """Return the body under its forces."""
         return self.forces.on(moving(self.body.creation))
 
-    def discretization(self) -> "Discretization":
+    def discretization(self) -> "nonholo.Discretization":
         """Return the discretized body."""
         run = self.run
         return nonholo.discretize(self.system(), run.time_step, run.difference, run.constraint, run.order)
 
-    def in_force(self, discrete: "Discretization") -> Self:
+    def in_force(self, discrete: "nonholo.Discretization") -> Self:
         """Return the scenario with the library's choices of difference and constraint written out."""
         choices = {name: getattr(discrete, name, None) for name in ("difference", "constraint")}
         return self.model_copy(update={"run": self.run.model_copy(update=choices)})
@@ -238,8 +232,7 @@ class Scenario(AbstractScenario):
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""
-        branch = {} if self.run.branch == "principal" else {"branch": self.run.branch}
-        return {**self.start.model_dump(exclude_none=True), "save_every": self.run.save_every, **branch}
+        return self.start.model_dump(exclude_none=True) | self.run.model_dump(include={"steps", "save_every", "branch"})
 
 
 def is_ready(product: Any) -> bool:

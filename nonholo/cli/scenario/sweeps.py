@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, Self, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import AliasChoices, Field, model_validator
@@ -19,11 +19,7 @@ from nonholo.cli.scenario import files, sections
 from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
 from nonholo.ensembles import REDUCTIONS, STARTS, component_of, force_numbers, start_component
-from nonholo.ensembles.distributions import DISTRIBUTIONS
-
-if TYPE_CHECKING:
-    from nonholo.ensembles import AbstractDistribution
-    from nonholo.ensembles.designs import Grid, RandomDesign
+from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution
 
 _SIZES = {"size": "vectors", "n": "matrices"}  # what a distribution calls the length of what it draws
 _WORDS = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): make for name, make in DISTRIBUTIONS.items()}
@@ -67,7 +63,7 @@ def along(value: Any) -> np.ndarray:
     raise ValueError(f"{requirement} {{from = 0.1, to = 10.0, count = 50}}. Got {value!r}")
 
 
-def distribution_of(table: Any) -> "AbstractDistribution":
+def distribution_of(table: Any) -> AbstractDistribution:
     """Return the distribution that a table describes.
 
     Example:
@@ -142,21 +138,22 @@ class GridDesign(sections.Section):
     rng: Rng = 0
     values: Values[Annotated[Any, sections.checked_by(along)]]
 
-    def with_members(self) -> Self:
+    @model_validator(mode="after")
+    def _with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for this number of members."""
         if self.members is None:
             return self
         values = self.values.model_dump()
         ranges = [table[name] for table in values.values() for name in table if isinstance(table[name], dict)]
         if not ranges:
-            raise ValueError("needs a range with a count to scale")
+            raise ValueError("`Grid(members=...)` needs a range with a count to scale")
         whole = math.prod(len(along(value)) for table in values.values() for value in table.values())
         factor = (self.members / whole) ** (1 / len(ranges))
         for entry in ranges:
             entry["count"] = max(1, round(entry["count"] * factor))
-        return self.model_copy(update={"members": None, "values": type(self.values).model_validate(values)})
+        return self.model_validate(self.model_dump(exclude={"members"}) | {"values": values})
 
-    def design(self) -> "Grid":
+    def design(self) -> nonholo.Grid:
         """Return the design under the names of the library."""
         return nonholo.Grid({name: along(value) for name, value in self.values.by_name()}, rng=self.rng)
 
@@ -175,11 +172,7 @@ class RandomMembers(sections.Section):
     rng: Rng = 0
     values: Values[Annotated[Any, sections.checked_by(distribution_of)]]
 
-    def with_members(self) -> Self:
-        """Return the design itself: it has that number of members."""
-        return self
-
-    def design(self) -> "RandomDesign":
+    def design(self) -> nonholo.RandomDesign:
         """Return the design under the names of the library."""
         drawings = {name: distribution_of(value) for name, value in self.values.by_name()}
         return nonholo.RandomDesign(self.members, drawings, rng=self.rng)
@@ -224,12 +217,6 @@ class SweepScenario(AbstractScenario):
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 
-    @model_validator(mode="after")
-    def _starts(self) -> Self:
-        if self.start is None and not self.is_family:
-            raise ValueError("`Scenario(start=...)` is missing")
-        return self
-
     @property
     def is_family(self) -> bool:
         """Whether members are made by a function, with their start."""
@@ -264,29 +251,14 @@ def load_sweep_scenario(
     files.take_module(module)
     origin, document = files.read_document(name, files.built_in("sweeps"), settings)
     files.by_table(document)
-    for setting in settings:
-        files.assign(document, setting)
-    files.by_table(document)
     body = files.table_in(document, "body").get("kind")
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
     files.complete(document, name, origin, start=False)
     request = files.validate(document, SweepScenario, Path(name).stem, origin)
-    if flaws := _refusals(request.scenario):
+    if flaws := list(_refusals(request.scenario)):
         raise origin.error(*flaws)
-    try:
-        design = request.scenario.design.with_members()
-    except ValueError as failure:
-        raise origin.error(("design.members", str(failure))) from None
-    return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
-
-
-def sweep_text(scenario: SweepScenario) -> str:
-    """Return the scenario of a sweep as TOML with every value that was in force; running it again repeats it."""
-    document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
-    title, design = document.pop("title"), document.pop("design")
-    values = {f"{table}.{name}": x for table, own in design.pop("values").items() for name, x in own.items()}
-    return files.toml_text(title, {**document, "design": design, "design.values": values})
+    return request
 
 
 def _complete(document: dict[str, Any]) -> None:
@@ -303,10 +275,9 @@ def _complete(document: dict[str, Any]) -> None:
 def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
     if needs_size(value) and isinstance(own.get(name), list):
         value["size"] = len(own[name])
-    if name in own or start_component(name):
-        return
-    with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[name] = _typical(value)
+    if name not in own and not start_component(name):
+        with contextlib.suppress(ValueError):  # reported as a problem of the design
+            own[name] = _typical(value)
 
 
 def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
@@ -316,10 +287,9 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
         return
     owner, _ = next(iter(parts))
     places = [(owner, component) for component in range(len(parts))]
-    if parts.keys() != set(places):
-        return
-    with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[owner] = [_typical(parts[place]) for place in places]
+    if parts.keys() == set(places):
+        with contextlib.suppress(ValueError):  # reported as a problem of the design
+            own[owner] = [_typical(parts[place]) for place in places]
 
 
 def _typical(value: Any) -> Any:
@@ -329,25 +299,20 @@ def _typical(value: Any) -> Any:
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
 
 
-def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
-    """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
-    flaws = _refused_values(scenario)
-    if scenario.start is not None and scenario.is_family:
-        flaws.append(("start", "is not for sweeps of this body, whose keys have its start"))
+def _refusals(scenario: SweepScenario) -> Iterator[tuple[str, str]]:
+    """Yield key paths and texts of what a design cannot vary, and a scenario of one motion may say, but no sweep."""
+    entries = [(table, name) for table in TABLES for name in getattr(scenario.design.values, table)]
+    if not entries:
+        yield "design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'
+    names = _varied_names(scenario)
+    yield from filter(None, (_flaw(scenario, table, name, names[table]) for table, name in entries))
+    if scenario.is_family == (scenario.start is not None):
+        yield "start", "is not for sweeps of this body, whose keys have its start" if scenario.start else "is missing"
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key, None) is not None:
-            flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"))
+            yield f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"
     if scenario.run.save_every != 1:
-        flaws.append(("run.save_every", "is not for sweeps: [keep] lists what is kept"))
-    return flaws
-
-
-def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
-    """Return key paths and texts of what a design cannot vary."""
-    if not (entries := [(table, name) for table in TABLES for name in getattr(scenario.design.values, table)]):
-        return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
-    names = _varied_names(scenario)
-    return [flaw for table, name in entries if (flaw := _flaw(scenario, table, name, names[table]))]
+        yield "run.save_every", "is not for sweeps: [keep] lists what is kept"
 
 
 def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]) -> tuple[str, str] | None:

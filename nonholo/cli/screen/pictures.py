@@ -9,7 +9,10 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+import xarray
 
 import nonholo
 from nonholo.analysis.planar import blade_axes
@@ -20,12 +23,7 @@ from nonholo.cli.screen.errors import FAILED, USAGE, store_errors, warn
 from nonholo.ensembles import component_name
 from nonholo.io.metadata import read_attributes
 from nonholo.io.places import SWEEP_FORMAT, complete_file
-
-if TYPE_CHECKING:
-    import numpy as np
-    import xarray
-
-    from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit
 
 OVERVIEW, ALL, FILM = "overview", "all", "film"
 _MOST_TIMES = 20_000  # of the flow that is drawn along
@@ -42,13 +40,12 @@ _GIVEN: dict[str, Callable[[Any], Any]] = {
 }
 """Arguments of pictures that an orbit gives, by their names."""
 _ASKED = ("across", "up")  # arguments that the command line has
-_OTHER = ("animate",)  # drawn by --gif
 
 
 def kinds() -> dict[str, Callable[..., Any]]:
-    """Return the pictures of a run, by the names of the command line, the overview first."""
+    """Return the pictures of a run, by the names of the command line, the overview first; --gif draws its film."""
     plot = nonholo.plot
-    functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name not in _OTHER}
+    functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name != "animate"}
     of_orbits = [name for name, make in functions.items() if _necessary(make) <= {*_GIVEN, *_ASKED}]
     return {name.replace("_", "-"): functions[name] for name in sorted(of_orbits, key=lambda name: name != OVERVIEW)}
 
@@ -58,7 +55,7 @@ def _necessary(make: Callable[..., Any]) -> set[str]:
     return {each.name for each in parameters if each.default is each.empty and each.kind is not each.VAR_KEYWORD}
 
 
-def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | None) -> Any:
+def figure_of(kind: str, orbit: Orbit, look: dict[str, Any], **names: str | None) -> Any:
     """Return the figure of one kind, of named quantities if it has any: with the orbit, and the flow beside it."""
     make = kinds()[kind]
     parameters = inspect.signature(make).parameters
@@ -68,11 +65,11 @@ def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | No
     return picture if kind == OVERVIEW else (picture.axes if hasattr(picture, "axes") else picture.plane).figure
 
 
-def _quantity(side: str, name: str | None) -> Callable[["Orbit"], "np.ndarray"]:
+def _quantity(side: str, name: str | None) -> Callable[[Orbit], np.ndarray]:
     """Return what gives a number of each state: an array of orbits by its name, with the indices of one component."""
     attribute, *indices = (name or "").split(".")
 
-    def quantity(states: "Orbit") -> "np.ndarray":
+    def quantity(states: Orbit) -> np.ndarray:
         values: Any = getattr(states, attribute, None)
         if not all(index.isdigit() for index in indices) or not hasattr(values, "shape"):
             raise ValueError(f"a section needs --x and --y like body_velocity.0. Got '{name}' to run {side}.")
@@ -109,29 +106,28 @@ def _film(orbit: Any, path: Path, *, progress: bool, **look: Any) -> str:
         return str(nonholo.plot.animate(orbit, path, progress=report, overwrite=True, **look))
 
 
-def draw(orbit: Any, picture: Path | None, animation: Path | None, *, progress: bool) -> dict[str, str | None]:
-    """Draw the overview and the animation, with progress if wanted; return their paths, None for what is not drawn."""
+def draw(orbit: Any, store: Path, suffixes: list[str], *, progress: bool) -> dict[str, str | None]:
+    """Draw the overview and the animation beside a store; return their paths, None for what is not drawn."""
     paths: dict[str, str | None] = {"picture": None, "animation": None}
     with _at_no_cost():
-        if picture is not None:
-            paths["picture"] = _save(picture, lambda: figure_of(OVERVIEW, orbit, {}), progress=progress)
-        if animation is not None:
-            paths["animation"] = _film(orbit, animation, progress=progress)
+        if "png" in suffixes:
+            paths["picture"] = _save(beside(store, "png"), lambda: figure_of(OVERVIEW, orbit, {}), progress=progress)
+        if "gif" in suffixes:
+            paths["animation"] = _film(orbit, beside(store, "gif"), progress=progress)
     return paths
 
 
-def _draw_all(orbit: Any, picture: Path, look: dict[str, Any], dpi: float, *, progress: bool) -> list[str]:
-    """Draw every kind that this orbit has, each in a separate file; return their paths, and warn of the others."""
-    paths, others = [], []
+def _draw_all(orbit: Any, picture: Path, look: dict[str, Any], dpi: float, *, progress: bool) -> Iterator[str]:
+    """Draw every kind that this orbit has, each in a separate file; yield their paths, and warn of the others."""
+    others = []
     for kind in kinds():
         path, figure = picture.with_stem(f"{picture.stem}-{kind}"), functools.partial(figure_of, kind, orbit, look)
         try:
-            paths.append(_save(path, figure, dpi, progress=progress, what=f"drawing {kind}"))
+            yield _save(path, figure, dpi, progress=progress, what=f"drawing {kind}")
         except ValueError:
             others.append(kind)
     if others:
         warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} prints the reason.")
-    return paths
 
 
 def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
@@ -154,14 +150,14 @@ def _flow(orbit: Any) -> Any:
         return None
 
 
-def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None) -> str | None:
+def draw_sweep(sweep: xarray.Dataset, picture: Path, *names: str | None) -> str | None:
     """Draw a quantity of a sweep beside its store; return the path of the picture, None if there is none."""
     with _at_no_cost():
         return _map(sweep, picture, *names)
     return None
 
 
-def _map(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str:
+def _map(sweep: xarray.Dataset, picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str:
     """Draw a quantity over the design: the given quantities for color, x and y."""
     own: Any = [None if path is None else component_name(library_name(path)) for path in names]
     figure: Any = nonholo.plot.sweep_map(sweep, *own, **look).axes.figure
@@ -176,7 +172,7 @@ def draw_stored_run(store: Path, path: Path, look: dict[str, Any], kind: str, dp
     with store_errors(FAILED), progress_bar("reading", progress):
         orbit = nonholo.load_orbit(store)
     if kind == ALL:
-        return _draw_all(orbit, path, look, dpi, progress=progress)
+        return list(_draw_all(orbit, path, look, dpi, progress=progress))
     with store_errors(FAILED):
         if kind == FILM:
             return [_film(orbit, path, progress=progress, **look)]

@@ -8,7 +8,7 @@ them: a sixth of the size that a palette for each frame makes, as matplotlib wri
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack, cast
 
@@ -27,7 +27,7 @@ from nonholo.io.places import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation import _scenes
-from nonholo.plot.animation._scenes import Show, part_of, part_of_flow, shown_states, together
+from nonholo.plot.animation._scenes import Show, part_of, part_of_flow, shown_states
 from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
 from nonholo.plot.parts import drawable_in_time, orbit_with_poses, same_space
@@ -103,13 +103,13 @@ def animate(
     frame_states = shown_states(orbit, motion(orbit), total)
     figure, axes, set_clock = _stage(orbit, orbit.time[frame_states])
     others = [] if beside is None else [part_of_flow(beside, orbit.time[frame_states])]
-    draw = together([set_clock, scene(axes, orbit, [part_of(orbit, frame_states), *others])])
+    shows = [set_clock, *scene(axes, orbit, [part_of(orbit, frame_states), *others])]
     with complete_file(target) as part:
-        write_film(part, figure, draw, len(frame_states), rate, progress)
+        write_film(part, figure, shows, len(frame_states), rate, progress)
     return target
 
 
-def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
+def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Iterator[Show]]]:
     """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
     track = track_of(orbit) or momentum_track(orbit)
     scenes: dict[Any, tuple[Any, Any]] = {
@@ -123,7 +123,7 @@ def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float],
     return lambda _: 0.0, functools.partial(draw, track)
 
 
-def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:
+def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Show]:
     """Return a figure with a title, the time and a strip that shows the progress; its axes; what sets both."""
     figure = theme.new_figure((_SIZE, _SIZE), None)
     axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
@@ -155,26 +155,14 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
     return target
 
 
-def write_film(path: str, figure: Figure, draw: Show, total: int, rate: float, progress: Progress = None) -> None:
-    """Write a film with this many frames a second, of whose figure `draw` makes each."""
-    if (codec := _CODECS.get(Path(path).suffix.lower())) is None:
-        _write_gif(path, figure, draw, total, rate, progress)
+def write_film(path: str, figure: Figure, shows: list[Show], total: int, rate: float, progress: Progress) -> None:
+    """Write a film with this many frames a second, each drawn in the figure by all of `shows`."""
+    if codec := _CODECS.get(Path(path).suffix.lower()):
+        writer = FFMpegWriter(cast(Any, rate), codec[0], bitrate=-1, extra_args=codec[1])
+        with writer.saving(figure, path, _DPI):
+            for _ in _frames(shows, range(total), progress):
+                writer.grab_frame()
         return
-    with FFMpegWriter(cast(Any, rate), codec[0], bitrate=-1, extra_args=codec[1]).saving(figure, path, _DPI) as writer:
-        for _ in _frames(draw, total, progress):
-            writer.grab_frame()
-
-
-def _frames(draw: Show, total: int, progress: Progress) -> Iterator[int]:
-    """Draw the frames one by one, and report each after what is done with it."""
-    for frame in range(total):
-        draw(frame)
-        yield frame
-        if progress is not None:
-            progress(frame + 1, total)
-
-
-def _write_gif(path: str, figure: Figure, draw: Show, total: int, rate: float, progress: Progress) -> None:
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
     size = float(total) * math.prod(canvas.get_width_height())
@@ -184,13 +172,20 @@ def _write_gif(path: str, figure: Figure, draw: Show, total: int, rate: float, p
         canvas.draw()
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy(), "RGB")
 
-    samples = []
-    for frame in np.unique(np.linspace(0, total - 1, _SHOWN_FOR_PALETTE).round().astype(int)):
-        draw(int(frame))
-        samples.append(photograph())
-    look: Any = {"palette": _palette(samples), "dither": Image.Dither.NONE}
-    first, *others = [photograph().quantize(**look) for _ in _frames(draw, total, progress)]
+    some = np.unique(np.linspace(0, total - 1, _SHOWN_FOR_PALETTE).round().astype(int)).tolist()
+    look: Any = {"palette": _palette([photograph() for _ in _frames(shows, some)]), "dither": Image.Dither.NONE}
+    first, *others = [photograph().quantize(**look) for _ in _frames(shows, range(total), progress)]
     first.save(path, save_all=True, append_images=others, duration=max(20, round(1000 / rate)), loop=0, optimize=True)
+
+
+def _frames(shows: list[Show], frames: Sequence[int], progress: Progress = None) -> Iterator[int]:
+    """Draw frames one by one, and report each after what is done with it."""
+    for frame in frames:
+        for show in shows:
+            show(frame)
+        yield frame
+        if progress is not None:
+            progress(frame + 1, len(frames))
 
 
 def _palette(samples: list[Image.Image]) -> Image.Image:

@@ -4,7 +4,7 @@ In the plane a sleigh with its blade, center of mass and track, the outline of a
 their shadows, and boxes on the sphere that a body axis of theirs travels on.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
@@ -26,8 +26,6 @@ from nonholo.systems import System
 
 Show: TypeAlias = Callable[[int], None]
 """A function that shows a frame."""
-Points: TypeAlias = Callable[[Any], Float[np.ndarray, "K d"]]
-"""A function of states that gives their points."""
 
 _BETWEEN = 8  # states of a flow from frame to frame
 _MOST_PIECES = 1500  # of a trail
@@ -97,16 +95,6 @@ def motion_of(orbit: Orbit, point: Float[np.ndarray, "n dim"], length: float) ->
     return float(max(turn_per_state(orbit) / _TURN, speed * np.abs(np.diff(orbit.time)).max() / (_WAY * length)))
 
 
-def together(shows: Sequence[Show]) -> Show:
-    """Return what shows all of them."""
-
-    def show(frame: int) -> None:
-        for each in shows:
-            each(frame)
-
-    return show
-
-
 def draw_trail(axes: Axes, orbit: AbstractOrbit, part: Part, path: np.ndarray, color: Any = None, **look: Any) -> Show:
     """Return what draws the points of a path up to a frame, in the colors of time, or as the line of a flow."""
     at = evenly_spread(path, _MOST_PIECES)
@@ -128,8 +116,7 @@ def draw_point(axes: Axes, part: Part, points: Float[np.ndarray, "F 2"]) -> Show
     return lambda frame: dot.set_data(*points[frame : frame + 1].T)
 
 
-Drawn: TypeAlias = Callable[[Any], Bodies | None]
-"""A function of states that gives their bodies."""
+Motion: TypeAlias = tuple[Part, Float[np.ndarray, "K 2"], Bodies | None]  # a part, its path, its body in each frame
 
 
 def motion_in_plane(orbit: Orbit) -> float:
@@ -138,34 +125,25 @@ def motion_in_plane(orbit: Orbit) -> float:
     return motion_of(orbit, point, float(np.ptp(plate(orbit.system)[0][:, 0])))
 
 
-def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+def draw_body_in_plane(axes: Axes, orbit: Orbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a body on SE(2) and others beside; return what shows a frame."""
     frame, outline = _axes(orbit.system), plate(orbit.system)
-    radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
-
-    def points(states: Orbit) -> Float[np.ndarray, "K 2"]:
-        return (states.configuration @ frame)[:, :2, 2]
-
-    def bodies(states: Orbit) -> Bodies:
-        g = states.configuration @ frame
-        outlines = [[part @ pose[:2, :2].T + pose[:2, 2] for part in outline] for pose in g]
-        return Bodies(g[:, :2, 2], g[:, :2, 0], outlines, radius, 1.0)
-
-    return _draw_in_plane(axes, orbit, parts, points, bodies)
+    radius = max(float(np.linalg.norm(corners, axis=1).max()) for corners in outline)
+    motions: list[Motion] = []
+    for part in parts:
+        g = part.frames.configuration @ frame
+        outlines = [[corners @ pose[:2, :2].T + pose[:2, 2] for corners in outline] for pose in g]
+        bodies = Bodies(g[:, :2, 2], g[:, :2, 0], outlines, radius, 1.0)
+        motions.append((part, (part.path.configuration @ frame)[:, :2, 2], bodies))
+    return _draw_in_plane(axes, orbit, motions)
 
 
-def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a path in two coordinates, with the outline of the system or as a point; return what shows a frame."""
-    if not track.is_place:
-        look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
-        axes.text(0.99, 0.01, track.names[0], ha="right", **look)
-        axes.text(0.01, 0.99, track.names[1], va="top", **look)
     points = track.points(orbit)
-
-    def bodies(states: AbstractOrbit) -> Bodies | None:
-        return bodies_of(orbit, points, states) if track.is_place else None
-
-    return _draw_in_plane(axes, orbit, parts, track.points, bodies, is_place=track.is_place)
+    bodies = [bodies_of(orbit, points, part.frames) if track.is_place else None for part in parts]
+    motions = [(part, track.points(part.path), at) for part, at in zip(parts, bodies, strict=True)]
+    return _draw_in_plane(axes, orbit, motions, track)
 
 
 def _axes(system: System) -> Float[np.ndarray, "3 3"]:
@@ -174,15 +152,15 @@ def _axes(system: System) -> Float[np.ndarray, "3 3"]:
     return np.eye(3) if axes is None else axes
 
 
-def _draw_in_plane(
-    axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
-) -> Show:
-    motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
+def _draw_in_plane(axes: Axes, orbit: AbstractOrbit, motions: list[Motion], track: Any = None) -> Iterator[Show]:
+    """Draw motions whose points are places, or those of a track; yield what shows a frame."""
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
-    if is_place:
-        fit_view(axes, shown)
-        axes.set(xlabel="", ylabel="")
+    if getattr(track, "is_place", True):
+        fit_view(axes, shown, ("", ""))
     else:
+        look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
+        axes.text(0.99, 0.01, track.names[0], ha="right", **look)
+        axes.text(0.01, 0.99, track.names[1], va="top", **look)
         axes.margins(0.1)
         axes.update_datalim(shown)
         axes.autoscale_view()
@@ -190,12 +168,10 @@ def _draw_in_plane(
     axes.tick_params(length=0, labelleft=False, labelbottom=False)
     axes.spines[:].set_visible(False)
     axes.set_axisbelow(True)
-    shows = []
     for part, path, at in motions:
-        shows.append(draw_trail(axes, orbit, part, path))
-        shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at))
+        yield draw_trail(axes, orbit, part, path)
+        yield draw_point(axes, part, track.points(part.frames)) if at is None else _draw_outline(axes, part, at)
     theme.legend(axes, loc="best")
-    return together(shows)
 
 
 def _draw_outline(axes: Axes, part: Part, bodies: Bodies) -> Show:
@@ -245,23 +221,21 @@ def motion_in_space(orbit: Orbit) -> float:
     return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(box_in_space(orbit.system).half)))
 
 
-def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+def draw_in_space(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Iterator[Show]:
     """Draw a path in three coordinates with a body on SE(3) as a box, or a point; return what shows a frame."""
     box = box_in_space(orbit.system) if isinstance(orbit, Orbit) else None
     paths = [track.points(part.path) for part in parts]
     reach = 0.0 if box is None else float(np.linalg.norm(box.half) * _ARM + np.linalg.norm(box.center))
     every = np.concatenate(paths)
     floor = _draw_floor(axes, np.concatenate([every - reach, every + reach]))
-    shows = []
     for part, path in zip(parts, paths, strict=True):
-        shows.append(draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1))
-        shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5))
+        yield draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1)
+        yield draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5)
         if box is None:
-            shows.append(draw_point(axes, part, _VIEW(track.points(part.frames))[0]))
+            yield draw_point(axes, part, _VIEW(track.points(part.frames))[0])
         else:
-            shows.append(_draw_box_with_axes(axes, part, box, floor))
+            yield _draw_box_with_axes(axes, part, box, floor)
     theme.legend(axes, loc="upper right")
-    return together(shows)
 
 
 def _draw_floor(axes: Axes, points: Float[np.ndarray, "L 3"]) -> float:
@@ -319,20 +293,17 @@ def motion_on_sphere(orbit: Orbit) -> float:
     return turn_per_state(orbit) / float(_TURN_ON_SPHERE)
 
 
-def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+def draw_on_sphere(axes: Axes, orbit: Orbit, parts: list[Part]) -> Iterator[Show]:
     """Draw the sphere, and on it the body and others beside; return what shows a frame."""
     gamma = forbidden_axis(orbit.system)
     name = "body axis 3" if gamma is None else "forbidden axis"
     gamma = np.array([0.0, 0.0, 1.0]) if gamma is None else gamma
-    own = parts[0]
-    view = best_view(own.path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
+    view = best_view(parts[0].path.configuration @ gamma, known_axes(*rotation_axes(orbit)))
     draw_globe(axes, view)
-    shows = []
     for part in reversed(parts):
-        shows.append(_trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:])))
-        shows.append((_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name))
+        yield _trace(axes, view, part, gamma, part.colors(orbit, part.path.time[1:]))
+        yield (_ghost if part.is_flow else _sticks)(axes, view, part.frames, gamma, name)
     theme.legend(axes, loc="lower left", borderaxespad=0.0)
-    return together(shows)
 
 
 def _ghost(axes: Axes, view: View, frames: Orbit, *_: Any) -> Show:

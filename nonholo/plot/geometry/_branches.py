@@ -4,6 +4,7 @@ Values are drawn on the variety of displacements, or as tangents of the deltoid,
 three real ones. Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
 """
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
@@ -35,15 +36,11 @@ def draw_deltoid(axes: Axes, region: Deltoid) -> tuple[Polygon, Line2D, PathColl
     return inside, boundary, axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
 
 
-def name_inside(axes: Axes, region: Deltoid, words: str) -> None:
-    """Write words into the region with three real values."""
-    x, y = on_plane(region.discrete.system, region.cusps).T @ [0.4, 0.3, 0.3]
-    axes.annotate(words, (x, y), ha="center", va="center", color=theme.DISCRETE, fontweight="bold", zorder=5)
-
-
 def dress_momenta(axes: Axes, region: Deltoid, title: str) -> None:
-    """Name the axes; the corners beside the long cusp are free, for the legend and for words."""
+    """Name the axes and the region; the corners beside the long cusp are free, for the legend and for words."""
     cusps = on_plane(region.discrete.system, region.cusps)
+    look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
+    axes.annotate("3 real values", tuple(cusps.T @ [0.4, 0.3, 0.3]), **look)
     points_down = bool(cusps[0, 1] < cusps[1, 1])
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
@@ -109,7 +106,6 @@ def branch_counts(
         around = ellipse(orbit.system, float(orbit.energy[0]))
         level = axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
         path = draw_orbit(axes, orbit, momenta_on_plane(orbit))
-    name_inside(axes, region, "3 real values")
     dress_momenta(axes, region, "Real values")
     return BranchCounts(axes, inside, boundary, dots, resting, level, path)
 
@@ -185,7 +181,8 @@ def branches(
         (3, '0: 49°')
     """
     discrete = planar_map("plot.branches(discrete=...)", discrete)[0]
-    on_momenta = _is_over_momenta(discrete, plane)
+    sheet = cast(Sheet, sheet_of(discrete.system))
+    on_momenta = _is_over_momenta(discrete, sheet.has_deltoid, plane)
     values = branching.branches(discrete, momentum=momentum, displacement=displacement)
     if displacement is not None:
         W = np.asarray(displacement, dtype=float)
@@ -195,12 +192,11 @@ def branches(
         over = branching.displacements_over(discrete, momentum)
         W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
-    return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
+    return (_over_momenta if on_momenta else _on_displacements)(axes, sheet, discrete, values, W)
 
 
-def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
+def _is_over_momenta(discrete: Discretization, has_deltoid: bool, plane: str | None) -> bool:
     """Return whether to draw on the plane of momenta."""
-    has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
@@ -210,42 +206,35 @@ def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
     return plane == "momenta"
 
 
-def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
-    curves, level, sheet = [], None, _sheet(discrete)
+def _on_displacements(axes: Axes, sheet: Sheet, discrete: Discretization, values: Branches, W: Any) -> BranchesPicture:
+    curves, level = [], None
     if values.energy > 0:
         curves = [invariant_curve(discrete, values.energy)]
         level = draw_level(axes, sheet, curves[0], label="its energy", color=theme.DISCRETE, linewidth=1.5, zorder=2)
-    real = np.flatnonzero(values.is_real)
-    places = sheet.places(sheet.variety.points(values.displacement[real].real))
+    places = sheet.places(sheet.variety.points(values.displacement[values.is_real].real))
     dots = _dots(axes, values, places, sheet.places(sheet.variety.points(W[None])))
-    labels = _labels(axes, sheet, values, places, places * sheet.inwards(places))
+    labels = tuple(_labels(axes, sheet, values, places, places * sheet.inwards(places)))
     theme.write_title(axes, _title(values))
     sheet.dress(axes, curves, places)
     return BranchesPicture(axes, values, *dots, level, (), labels)
 
 
-def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
-    region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
+def _over_momenta(axes: Axes, sheet: Sheet, discrete: Discretization, values: Branches, W: Any) -> BranchesPicture:
+    region, system = deltoid(discrete), discrete.system
     draw_deltoid(axes, region)
     before, after = system.restrict(maps.discrete_legendre(discrete, W)), system.restrict(values.momentum[0].real)
     here, there = on_plane(system, np.stack([before, after]))
-    real = np.flatnonzero(values.is_real)
-    places = on_plane(system, region.touching(_angles(sheet, values)[real]))
+    places = on_plane(system, region.touching(_angles(sheet, values)[values.is_real]))
     tangents = []
-    for i, place in zip(real, places, strict=True):
+    for i, place in zip(np.flatnonzero(values.is_real), places, strict=True):
         ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
         style: Any = {"linewidth": 1.6} if i == values.principal else {"linewidth": 1.1, "dashes": (5, 3)}
         tangents += axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
     dots = _dots(axes, values, places, here[None])
-    labels = _labels(axes, sheet, values, places, places - there)
-    name_inside(axes, region, "3 real values")
+    labels = tuple(_labels(axes, sheet, values, places, places - there))
     dress_momenta(axes, region, _title(values))
     return BranchesPicture(axes, values, *dots, None, tuple(tangents), labels)
-
-
-def _sheet(discrete: Discretization) -> Sheet:
-    return cast(Sheet, sheet_of(discrete.system))
 
 
 def _angles(sheet: Sheet, values: Branches) -> Float[np.ndarray, "B"]:
@@ -254,8 +243,7 @@ def _angles(sheet: Sheet, values: Branches) -> Float[np.ndarray, "B"]:
 
 def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
     """Draw the values and the present displacement; count the complex values in the legend."""
-    real = np.flatnonzero(values.is_real)
-    is_principal = real == values.principal if values.principal is not None else np.zeros(len(real), dtype=bool)
+    is_principal = np.flatnonzero(values.is_real) == values.principal  # nowhere if it is None
     own, look = theme.own_look(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
     principal = others = None
     if is_principal.any():
@@ -269,18 +257,16 @@ def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) ->
     return principal, others, present
 
 
-def _labels(axes: Axes, sheet: Sheet, values: Branches, places: np.ndarray, away: np.ndarray) -> tuple[Annotation, ...]:
+def _labels(axes: Axes, sheet: Sheet, values: Branches, places: np.ndarray, away: np.ndarray) -> Iterator[Annotation]:
     """Write index and step angle beside each real value, in a direction."""
     angles = np.degrees(_angles(sheet, values))
-    labels = []
     for i, place, direction in zip(np.flatnonzero(values.is_real), places, away, strict=True):
         size = np.linalg.norm(direction)
         x, y = direction / size if size > 0 else np.array([0.0, 1.0])
         text = f"{i}: {angles[i]:.0f}°".replace("-", "\u2212")
         look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
         shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
-        labels.append(axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look))
-    return tuple(labels)
+        yield axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look)
 
 
 def _title(values: Branches) -> str:
@@ -346,10 +332,8 @@ def branch_tree(
     """
     system = _system_of(discrete, tree)
     if axes is None:
-        plane, growth = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
-    else:
-        plane, growth = pair("plot.branch_tree(axes=...)", axes)
-    plane, growth = map(theme.axes_or_new, (plane, growth))
+        axes = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
+    plane, growth = map(theme.axes_or_new, pair("plot.branch_tree(axes=...)", axes))
     restricted = system.restrict(tree.momentum.real)
     momentum = on_plane(system, restricted)
     if momentum.shape[1] == 2:
@@ -391,8 +375,7 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     counts = axes.plot(level, tree.counts, "o", markersize=7, **theme.own_look(theme.DISCRETE, "distinct images"))[0]
     look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
-    axes.set(xlabel="generation k", ylabel="number of images", yscale="log")
-    axes.set_title("Growth", loc="left")
+    axes.set(title="Growth", xlabel="generation k", ylabel="number of images", yscale="log")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_minor_locator(NullLocator())
     theme.legend(axes, loc="upper left")

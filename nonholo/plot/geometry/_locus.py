@@ -244,8 +244,7 @@ def locus_section(
     alone = _meeting(axes, locus.whiskers(_LONG_WHISKER), plane, n, height, label="equation alone", **empty)
     names = cast(Sheet, sheet_of(locus.discrete.system)).component_names
     across, up, along_normal = (_words(row, names) for row in (*plane, n))
-    axes.set(xlabel=across, ylabel=up)
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel=across, ylabel=up, adjustable="datalim", aspect="equal")
     theme.legend_above(axes, f"Section  {along_normal} = {height:g}")
     return LocusSection(axes, curve, plane, crossings, alone)
 

@@ -1,6 +1,5 @@
 """Orbits in coordinates, or on groups with forms that depend on the pose: path, outline of the body, coordinates."""
 
-import functools
 import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -23,9 +22,7 @@ _THIN = 0.35  # shortest side of the box in space, in parts of its longest
 def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) -> Float[np.ndarray, "d 2"]:
     """Set up axes of the plane or of space, with one unit, about the points of a path; return what they show."""
     if len(names) == 2:
-        view = parts.fit_view(axes, points)
-        axes.set(xlabel=names[0], ylabel=names[1])
-        return view
+        return parts.fit_view(axes, points, names)
     square = parts.square_about(points)  # with a margin, no side much shorter than the longest
     half = np.maximum(0.57 * np.ptp(points, axis=0), _THIN * np.ptp(square[0]) / 2)
     limits = square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
@@ -158,7 +155,8 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     columns = _names_of_path(space)
     is_place, names = columns[:2] == ["x", "y"], [symbol(name) for name in columns]
     title = "Path" if is_place else f"Plane of {names[0]} and {names[1]}"
-    return Track(title, names, functools.partial(_columns, [space.index(name) for name in columns]), is_place)
+    at = [space.index(name) for name in columns]
+    return Track(title, names, lambda of: of.configuration[:, at], is_place)
 
 
 def _names_of_path(names: tuple[str, ...]) -> list[str]:
@@ -208,7 +206,7 @@ def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> 
     first = _names_of_path(names)
     others = [i for i, name in enumerate(names) if name not in first] or list(range(len(names)))
     symbols = [symbol(names[i]) for i in others]
-    draw_components(axes, orbit, flow, functools.partial(_columns, others), symbols, "Coordinates", "coordinates")
+    draw_components(axes, orbit, flow, lambda of: of.configuration[:, others], symbols, "Coordinates", "coordinates")
 
 
 @theme.in_style
@@ -231,10 +229,6 @@ def symbol(name: str, *, is_rate: bool = False) -> str:
     base = base.replace("_", r"\_")
     formula = rf"\dot{{{base}}}" if is_rate else base
     return f"${formula}_{{{index}}}$" if index else f"${formula}$"
-
-
-def _columns(at: list[int], orbit: Any) -> np.ndarray:
-    return orbit.configuration[:, at]
 
 
 def _track_on(group: AbstractMatrixGroup) -> Track | None:

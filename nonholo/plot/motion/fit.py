@@ -3,20 +3,19 @@
 Deviations of measurements from a fitted motion, against time.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
+from nonholo.analysis.inverse import Fit, Profile
 from nonholo.plot import theme
-
-if TYPE_CHECKING:
-    from nonholo.analysis.inverse import Fit, Profile
 
 _WIDE = 6.0  # standard deviations that are drawn of a side without bound
 
 
 @theme.in_style
-def fit_profile(profile: "Profile") -> Any:
+def fit_profile(profile: Profile) -> Any:
     r"""Draw $\tau^2$, the growth of the sum of squares in units of the noise, with the parabola, and the interval.
 
     Args:
@@ -25,8 +24,6 @@ def fit_profile(profile: "Profile") -> Any:
     Returns:
         The matplotlib figure.
     """
-    from scipy.interpolate import PchipInterpolator
-
     half, wide = profile.cut * profile.error, _WIDE * profile.error
     ends = np.array(profile.interval) - profile.value
     low, high = np.where(np.isfinite(ends), ends, (-wide, wide))
@@ -51,7 +48,7 @@ _UNITS = {"position": "position, length", "turn": "turn, rad", "rate": "angular 
 
 
 @theme.in_style
-def fit_residuals(fit: "Fit") -> Any:
+def fit_residuals(fit: Fit) -> Any:
     """Draw the residuals of a fit against time, a panel for each kind of number, with a band of two noise levels.
 
     Args:

@@ -21,6 +21,7 @@ Axis: TypeAlias = Float[np.ndarray, "3"] | None  # a unit vector
 
 _MOST_DOTS = 1200
 _FINEST = np.radians(4.0)  # no need to draw states that are closer than this
+_NEAR = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 _REMEDY = "Use `blade_track` for a sleigh, `point_track` for other motions of SE(n)."
 
 
@@ -147,11 +148,21 @@ def rotation_axes(orbit: Orbit) -> tuple[Axis, Axis]:
 
 
 def _rotation_axis(orbit: Orbit, state: int, repelling: int) -> Axis:
-    velocity, equilibria = parts.permanent_velocity(orbit, state), parts.known_equilibria(orbit.system)
-    attracting = None if equilibria is None else equilibria.attracting
-    if velocity is None or (attracting is not None and repelling * (velocity @ attracting) > 0):
+    """Return the axis of the permanent rotation that a state is close to, in the metric of the kinetic energy."""
+    system, equilibria, here = orbit.system, parts.known_equilibria(orbit.system), orbit[state : state + 1]
+    velocity, inertia = here.body_velocity[0], np.asarray(system.inertia_operator)
+    if equilibria is None or len(equilibria.subspace) == 0 or not velocity @ inertia @ velocity > 0:
         return None
-    return orbit[state : state + 1].configuration[0] @ velocity / np.linalg.norm(velocity)
+    if len(equilibria.subspace) < len(system.constraint_subspace):
+        line = equilibria.subspace[0]
+        along = (velocity @ inertia @ line) / (line @ inertia @ line) * line
+        across = velocity - along
+        if not across @ inertia @ across <= _NEAR**2 * (velocity @ inertia @ velocity):
+            return None
+        velocity = along
+    if equilibria.attracting is not None and repelling * (velocity @ equilibria.attracting) > 0:
+        return None
+    return here.configuration[0] @ velocity / np.linalg.norm(velocity)
 
 
 def known_axes(*axes: Axis) -> Float[np.ndarray, "A 3"]:

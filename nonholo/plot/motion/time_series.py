@@ -18,7 +18,7 @@ from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.parts import draw_line, drawable_in_time, orbit_with_poses
-from nonholo.plot.sheets import Blade, blade_of_system
+from nonholo.plot.sheets import StripSheet, strip_of
 
 Series = Callable[[Any], np.ndarray]
 MOST_LINES = 60  # momenta, or velocities, in one panel
@@ -69,8 +69,8 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
 
 
 def _turn_and_speed(orbit: Orbit) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
-    blade = cast(Blade, blade_of_system(orbit.system))
-    return blade.heading(orbit) / np.pi, blade.speed(orbit)
+    strip = cast(StripSheet, strip_of(orbit.system))
+    return strip.heading(orbit) / np.pi, strip.speed(orbit)
 
 
 def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], has_label: bool) -> None:

@@ -13,11 +13,10 @@ from matplotlib.lines import Line2D
 
 from nonholo.base.checks import error, flags, shown
 from nonholo.base.types import Float
-from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import parts, theme
 from nonholo.plot.motion.coordinates import draw_track, dress_path, mark_path_ends, track_of
-from nonholo.plot.sheets import Blade, blade_of_system
+from nonholo.plot.sheets import StripSheet, strip_of
 
 
 class BladeTrack(NamedTuple):
@@ -73,13 +72,13 @@ def blade_track(
         (121, 1)
     """
     flags("blade_track", enlarge=enlarge)
-    orbit, blade = _with_blade("blade_track(orbit=...)", orbit)
+    orbit, strip = _with_blade("blade_track(orbit=...)", orbit)
     flow = None if flow is None else _with_blade("blade_track(flow=...)", flow)[0]
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     enlarge = enlarge and not axes.has_data()
     parts.remove_detail(axes)
-    position = blade.contact(orbit)
-    cusps, view = _cusps(position, blade.speed(orbit)), parts.fit_view(axes, position)
+    position = strip.contact(orbit)
+    cusps, view = _cusps(position, strip.speed(orbit)), parts.fit_view(axes, position)
     track, blades, masses, line = _draw(axes, orbit, orbit, flow, view, blades=18, length=0.032)
     ends = parts.draw_ends(axes, position, orbit)
     middle = position[parts.evenly_spread(position)].mean(axis=0)
@@ -92,16 +91,16 @@ def blade_track(
     return BladeTrack(axes, track, blades, masses, stars, ends, line, inset)
 
 
-def _with_blade(where: str, orbit: Any) -> tuple[Orbit, Blade]:
+def _with_blade(where: str, orbit: Any) -> tuple[Orbit, StripSheet]:
     """Return an orbit with poses, dense enough for a curve, and its blade."""
     orbit = parts.drawable(where, orbit)
-    if (blade := blade_of_system(orbit.system)) is None:
+    if (strip := strip_of(orbit.system)) is None:
         raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), "Use `body_axis_track` for a top.")
-    return parts.orbit_with_poses(where, orbit), blade
+    return parts.orbit_with_poses(where, orbit), strip
 
 
 def _contact(orbit: Orbit) -> Float[np.ndarray, "K 2"]:
-    return cast(Blade, blade_of_system(orbit.system)).contact(orbit)
+    return cast(StripSheet, strip_of(orbit.system)).contact(orbit)
 
 
 def _cusps(position: Float[np.ndarray, "K 2"], speed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "C 2"]:
@@ -124,15 +123,15 @@ def _draw(
 
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
-    blade = cast(Blade, blade_of_system(orbit.system))
+    strip = cast(StripSheet, strip_of(orbit.system))
     # states evenly in way and, with less weight, in turn, so that the cusp gets its share
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(blade.contact(orbit), axis=0), axis=1))])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(strip.contact(orbit), axis=0), axis=1))])
     turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
     shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
     some = parts.evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
-    poses = blade.poses(orbit.chosen(some))
+    poses = strip.blades(orbit.chosen(some))
     points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
-    center = (poses @ np.append(blade.center, 1.0))[:, :2]
+    center = (poses @ np.append(strip.center, 1.0))[:, :2]
     blades = parts.segments(points - half, points + half, colors=theme.INK, linewidth=1.5, zorder=5)
     axes.add_collection(parts.segments(points, center, colors=theme.MUTED, linewidth=0.7, zorder=2))
     axes.add_collection(blades)
@@ -220,12 +219,11 @@ def point_track(
         return _in_coordinates(where, orbit, axes, flow)
     orbit = parts.orbit_with_poses(where, orbit)
     group = orbit.system.group
-    n = group.size - 1
-    if n < 2 or group != SE(n):
+    if not group.is_affine:
         remedy = "Use `body_axis_track` on SO(3), `overview` on other groups."
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
     beside: Any = parts.same_space("point_track(flow=...)", flow, orbit, parts.orbit_with_poses)
-    axes = _axes(axes, 2 if n == 2 else 3)
+    axes = _axes(axes, 2 if group.size == 3 else 3)
     largest = np.sort(np.argsort(-np.ptp(orbit.position, axis=0), kind="stable")[:3])  # in which the path is largest
     at = parts.evenly_spread(orbit.position)
     position = orbit.position[:, largest]
