@@ -4,7 +4,7 @@ import abc
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -327,7 +327,7 @@ def model_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
         remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
         refuse_fixed_in_space(where, system, remedy, shown(system))
         return GroupModel(system, maker_of(system_of, shapes, numbers))
-    if not (system.parameters and system.family == system_of(by_name(shapes, numbers)).family):
+    if not (system.parameters and cast(Any, system).family == system_of(by_name(shapes, numbers)).family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error(where, "vary the parameters of one system", type(system).__name__, remedy)
     kind = CoordinateModel if getattr(system, "coordinates", ()) else PoseModel
