@@ -17,7 +17,7 @@ from nonholo.ensembles._names import checked_reductions, function_from, function
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.io.provenance import missing_part
-from nonholo.simulation import Ensemble, Members, check_forces, ensemble, in_lanes, stepper_of
+from nonholo.simulation import Ensemble, Members, check_forces, ensemble, in_lanes, numbers_of, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
@@ -116,7 +116,7 @@ class EnsembleTask:
         """Run a block of members and reduce it; under forces that differ one by one."""
         if of_forces := [name for name in block if _names.is_force_number(self.discrete.system, name)]:
             return join_results([([member], self._member(block, member, of_forces)) for member in range(block.count)])
-        parameters = {name: block[name] for name in block if name in self._fields}
+        parameters = {name: block[name] for name in block if name in numbers_of(self.discrete)}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         run |= _rows_of_starts(self.start, block)
         with _names.numbering(lambda member: block.first + member):
@@ -141,11 +141,11 @@ class EnsembleTask:
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""
         _check_starts(self.discrete, self.start, names)
+        system, numbers = self.discrete.system, numbers_of(self.discrete)
         for name in names:
-            system = self.discrete.system
             is_start = name in _names.STARTS or _names.start_component(name) is not None
-            if not (name in self._fields or is_start or _names.is_force_number(system, name)):
-                kind, names_known = type(system).__name__, ", ".join([*self._fields, *_names.force_numbers(system)])
+            if not (name in numbers or is_start or _names.is_force_number(system, name)):
+                kind, names_known = type(system).__name__, ", ".join([*numbers, *_names.force_numbers(system)])
                 remedy = f"{kind} has {names_known}; starts are {', '.join(_names.STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
@@ -164,11 +164,6 @@ class EnsembleTask:
         task = copy.copy(self)
         assign(task, discrete=discrete)
         return task
-
-    @property
-    def _fields(self) -> list[str]:
-        """The parameters in which members may differ."""
-        return [*self.discrete.system.inside.leaves, "inertia_operator", "time_step"]
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

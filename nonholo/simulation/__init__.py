@@ -7,4 +7,13 @@ from nonholo.simulation._flow import flow
 from nonholo.simulation._options import check_forces, refuse_many_matrices, stepper_of
 from nonholo.simulation._simulate import iterate, simulate
 from nonholo.simulation._stored import extend, resume_run, size_in_blocks
-from nonholo.simulation.members import Ensemble, Members, ScalarMembers, ensemble, in_lanes, in_one_thread, tangents
+from nonholo.simulation.members import (
+    Ensemble,
+    Members,
+    ScalarMembers,
+    ensemble,
+    in_lanes,
+    in_one_thread,
+    numbers_of,
+    tangents,
+)

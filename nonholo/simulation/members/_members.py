@@ -62,7 +62,7 @@ class Members(Keeper):
             return self.parameters[name]
         if name == STEP:
             return np.array([self.discrete.time_step], dtype=np.float64)
-        return np.asarray(_numbers(self.discrete)[name])[None]
+        return np.asarray(numbers_of(self.discrete)[name])[None]
 
     def of(self, member: int) -> Any:
         """Return the motion of one member."""
@@ -120,12 +120,13 @@ def _leaves(system: System) -> list[str]:
     return [name for name in system.leaves if getattr(system, name) is not None]
 
 
-def _numbers(motion: Any) -> Mapping[str, Any]:
+def numbers_of(motion: Any) -> dict[str, Any]:
     """Return what may differ from member to member, by the name that its constructor has for it."""
+    step = {} if motion.time_step is None else {STEP: motion.time_step}
     if in_coordinates(motion):
-        return motion.system.parameters
+        return {**motion.system.parameters, **step}
     system = motion.system.inside
-    return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
+    return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)} | step
 
 
 def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
@@ -134,7 +135,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
         return {}
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
-    numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
+    numbers = numbers_of(motion)
     kind, arrays = type(motion.system if in_coordinates(motion) else motion.system.inside).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
