@@ -21,7 +21,7 @@ from nonholo.simulation import Ensemble, Members, check_forces, ensemble, in_lan
 from nonholo.systems import one_start, refuse_forces
 
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
-_LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
+LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
 _STEPS_EACH = 1 << 20  # the same for systems that run one by one
 
 _FUNCTIONS = {name: reduction.function for name, reduction in REDUCTIONS.items()}
@@ -127,7 +127,7 @@ class EnsembleTask:
     def block(self) -> int:
         """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
         is_compiled = self.branch == PRINCIPAL.name and in_lanes(Members(self.discrete, {}, 1))
-        lanes, steps = (_LANES, _STEPS) if is_compiled else (1, _STEPS_EACH)
+        lanes, steps = (LANES, _STEPS) if is_compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
         return max(1, min(_BLOCK, _NUMBERS // (states * state), steps // self.steps) // lanes) * lanes

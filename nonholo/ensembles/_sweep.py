@@ -17,7 +17,7 @@ from nonholo import io, simulation
 from nonholo.base.checks import checked_path, count, error, flags, refuse_given, shown, within_disk, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.ensembles import stores
-from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
+from nonholo.ensembles._ensemble_task import LANES, RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from
 from nonholo.ensembles._names import NO_NAME, check_dimensions, differences, function_from, function_name, is_own
 from nonholo.ensembles._scheduling import Done, checked_scheduler, do_all
@@ -28,7 +28,6 @@ from nonholo.ensembles.stores import Output, SweepStore, Task, attributes_of, op
 _BLOCK = 4096  # most members of a block of a task that does not say how many
 _PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
 _FILE = 4096  # bytes that a file takes at least, on most file systems
-_LANES = 32  # members that a compiled loop takes at once
 DESCRIBED = (DatasetTask, EnsembleTask, FamilyTask)
 _MAKERS = {"EnsembleTask": ensemble_task_from, "FamilyTask": family_task_from, "DatasetTask": dataset_task_from}
 
@@ -244,7 +243,7 @@ def _check_task(task: Any, design: Any) -> None:
 def _begin(task: Task, design: Design, place: Path, block: Any, scenario: str | None, *, progress: bool) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
     io.places.check_suffix(place, "sweep(store=...)")
-    most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
+    most, least = (task.block, LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
     own = min(most, max(least, -(-design.members // _PIECES)))
     size = own if block is None else count("sweep(block=...)", block, "Pass how many members.")
     with simulation.in_one_thread(), progress_bar("compiling and trying a member", progress):
