@@ -76,16 +76,18 @@ class Discretization(Scheme, AbstractMotion):
         system, g = self.system, None
         if start.configuration is not None or (with_poses and system.is_spatial):
             g = start.pose(system.group)
-        g, pose = (g, start.canonical_pose(system, g)) if with_poses else (None, np.empty(0))
-        if start.name != "displacement":
+        place = g if with_poses else None
+        if start.name == "displacement":
+            remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
+            refuse_composition(start.where, self, remedy)
+            refuse_forces(start.where, system)
+            demand = on_variety(start.where, self, place, start.value)
+            momentum = legendre(self, demand - system.group.identity, "left")
+            reduced = of_finite_energy(start.owner, system, place, system.restrict_at(momentum, place))
+        else:
             full = start.name == "momentum" and shape_of(start.value) != (system.rank,)
-            return First((start.momentum(system, g), pose), np.asarray(start.value, dtype=np.float64) if full else None)
-        remedy = "A whole step does not lie on the variety: start from a momentum or a velocity."
-        refuse_composition(start.where, self, remedy)
-        refuse_forces(start.where, system)
-        W = on_variety(start.where, self, g, start.value)
-        momentum = legendre(self, W - system.group.identity, "left")
-        return First((of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g)), pose), W)
+            reduced, demand = start.momentum(system, place), np.asarray(start.value, np.float64) if full else None
+        return First((reduced, start.canonical_pose(system, g) if with_poses else np.empty(0)), demand)
 
     @functools.cached_property
     def is_balanced(self) -> bool:  # type: ignore[override]

@@ -14,7 +14,7 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses, write_first
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses
 from nonholo.systems import System
 
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -120,8 +120,10 @@ class CompiledStepper(AbstractBodyStepper):
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps with the state of the kernel."""
-        write_first(state, rows)
-        good, code = self.route.advance(state[self.width :], steps, every, tuple([column[1:] for column in rows]))
+        width, begin = self.width, 0
+        for column in rows:  # as `write_first` does, which stands in another room
+            column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
+        good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
         keep_row(state, rows, good // every)
         return good, code
 

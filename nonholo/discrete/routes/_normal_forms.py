@@ -113,6 +113,11 @@ class ScalarRoute(AbstractCompiledRoute):
         """Its data for JAX."""
         return ScalarStep(self.body, self.scale, self.axes.rows)
 
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart and the state of a run, in numbers of the kernel."""
+        state = np.zeros(kernels.STATE_SIZE)
+        return kernels.start(self.body, momenta, pose, state), state[kernels.CHART], state
+
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the compact poses of the kernel's axes."""
         return self.axes.poses(poses)
