@@ -310,8 +310,8 @@ def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comm
     for key, field in table.model_fields.items():
         value = values.get(key, None if field.is_required() else field.default)
         line = f"# {key} = ..." if value is None else f"{'# ' if as_comments else ''}{key} = {as_toml(value)}"
-        needed = "needed: " if value is None and field.is_required() else ""
-        lines.append(_entry(line, needed + (field.description or "")))
+        prefix = "needed: " if value is None and field.is_required() else ""
+        lines.append(_entry(line, prefix + (field.description or "")))
     return "\n".join(lines)
 
 
