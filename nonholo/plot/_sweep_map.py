@@ -324,15 +324,15 @@ def sweep_map(
     along = [] if subject.codes.dims == ("member",) else _axes_of(subject, x, y)
     axes = theme.axes_or_new(axes, (7.2, 5.4))
     if along:
-        picture = (_curve if len(along) == 1 else _map)(axes, subject, *along)
+        artists = (_curve if len(along) == 1 else _map)(axes, subject, *along)
     else:
-        picture = _draw_draws(axes, result, subject, x, y)
+        artists = _draw_draws(axes, result, subject, x, y)
     # the rest of the design has one value each
     coordinates = subject.values.coords.items()
     single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
     rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
     theme.legend_above(axes, ", ".join([subject.title, *rest]))
-    return SweepMap(axes, *picture)
+    return SweepMap(axes, *artists)
 
 
 def _check_named(names: list[str], x: str | None, y: str | None) -> None:

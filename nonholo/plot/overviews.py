@@ -212,9 +212,9 @@ def overview(
         panel.draw(own)
         if panel.is_timed:
             own.set_xlabel("time")
-    in_time = [own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed]
-    for own in in_time[:-1]:  # the lowest has the times of all
-        own.sharex(in_time[-1])
+    panels_in_time = [own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed]
+    for own in panels_in_time[:-1]:  # the lowest has the times of all
+        own.sharex(panels_in_time[-1])
         own.set_xlabel("")
         own.tick_params(labelbottom=False)
     return finish_page(figure, name_of(orbit), _facts(orbit), path)

@@ -20,8 +20,7 @@ from stopping import failing_at
 from waiting import wait_for
 
 import nonholo as nh
-from nonholo.cli.scenario.files import effective_text
-from nonholo.cli.scenario.sweeps import load_sweep_scenario
+from nonholo.cli.scenario.sweeps import files, load_sweep_scenario
 from nonholo.ensembles import standing_of
 from nonholo.io.places import write_lock
 
@@ -258,7 +257,7 @@ def test_the_stored_scenario_repeats_the_sweep(nonholo: Command) -> None:
 def test_effective_text_is_stable() -> None:
     """The text of a scenario is read as that scenario."""
     scenario = scenario_of(load_sweep_scenario, RANDOM)
-    assert scenario_of(load_sweep_scenario, effective_text(scenario)) == scenario
+    assert scenario_of(load_sweep_scenario, files.effective_text(scenario)) == scenario
 
 
 def test_info_of_a_sweep(nonholo: Command) -> None:

@@ -43,9 +43,9 @@ _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(
 def figures(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
     numbers = dataclasses.asdict(invariants(orbit))
-    gaps = [name for name, value in numbers.items() if isinstance(value, float) and not math.isfinite(value)]
+    blanks = [name for name, value in numbers.items() if isinstance(value, float) and not math.isfinite(value)]
     about = {"energy_is_exact": orbit.conserves_energy, "outcome": orbit.outcome.name, "message": orbit.outcome.message}
-    return numbers | dict.fromkeys(gaps) | about | {"body": _body(orbit)}
+    return numbers | dict.fromkeys(blanks) | about | {"body": _body(orbit)}
 
 
 def show(figures: dict[str, Any], heading: dict[str, str]) -> None:
