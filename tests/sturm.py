@@ -25,6 +25,6 @@ def real_roots(polynomial: fmpz_poly) -> int:
 
 def assert_counted(discrete: nh.Discretization, r: list[float] | np.ndarray) -> None:
     """Compare the real values over a momentum, in each factor of their polynomial, with the exact count."""
-    canonical = discrete.system.to_canonical(np.array(r))
+    canonical = discrete.system.to_canonical(np.array(r, dtype=float))
     result = locate(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
     assert [sum(mu.imag == 0 for mu in x.balls) for x in result] == [real_roots(x.factor) for x in result]

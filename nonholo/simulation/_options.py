@@ -43,7 +43,8 @@ def checked_run(
     if not isinstance(discrete, Discretization):
         others = {"branch": (branch, "principal"), "reconstruct": (with_poses, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    check_forces(owner, discrete, count)
+    if discrete.forces is not None:
+        check_forces(owner, discrete, count)
     watch = None if events is None else watch_for(owner, stepper, events)
     return Run(stepper, count, every, watch, how["throw"], how["progress"])
 

@@ -165,8 +165,9 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         sides = [-event.direction * (event.reset is not None) for event in watch.events.values()]
         values[:, :1] += _TOUCH * np.reshape(sides, (-1, 1)) * (values[:, :1] == 0)
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
-    places, (first,), (end,) = find_crossings(watch.events, stretch, values, owner, left, watch.part)
-    count = len(stretch) if first < 0 else 1 + int(end - stretch.step[0])
+    places, stopper, end = find_crossings(watch.events, stretch, values, owner, left, watch.part)
+    first = int(stopper[0])
+    count = len(stretch) if first < 0 else 1 + int(end[0] - stretch.step[0])
     each = enumerate(zip(values, places, strict=True))
     crossings = tuple(_crossings_of(watch, first, position, stretch, row, at) for position, (row, at) in each)
     last = values[:, count - 1 : count] if count else None

@@ -104,7 +104,7 @@ def simulate(
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts["restricted_velocity"] = restricted_velocity
     start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
-    if store is None:
+    if store is None and (checkpoint_every is not None or scenario is not None):
         of_stores = {"checkpoint_every": (checkpoint_every, None), "scenario": (scenario, None)}
         refuse_given("simulate", "come with a store", "Pass store='run.zarr' too, or leave it out.", **of_stores)
     if store is not None or run.watch is None:  # an event may stop a run in memory long before

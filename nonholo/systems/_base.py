@@ -36,7 +36,7 @@ Poses = Float[Array, "... N N"]
 class _Leaves:
     """The fields of a dataclass that are not its `structure`."""
 
-    def __get__(self, owner: Any, kind: Any) -> tuple[str, ...]:
+    def __get__(self, owner: Any, kind: Any) -> Any:
         return tuple(field.name for field in dataclasses.fields(kind) if field.name not in kind.structure)
 
 
