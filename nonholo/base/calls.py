@@ -66,8 +66,7 @@ def call(where: str, function: Callable[..., Any], *arguments: Any) -> Any:
         if "read-only" in str(failure):
             raise _writing_error(where, function) from failure
         raise
-    arrays = [pair for pair in zip(copies, arguments, strict=True) if is_compiled and isinstance(pair[1], np.ndarray)]
-    if any(new.tobytes() != old.tobytes() for new, old in arrays):
+    if is_compiled and any(_bytes(new) != _bytes(old) for new, old in zip(copies, arguments, strict=True)):
         raise _writing_error(where, function)
     return result
 
@@ -138,6 +137,10 @@ def _protect(argument: Any, is_writeable: bool) -> Any:
     for field in dataclasses.fields(argument):
         object.__setattr__(argument, field.name, read_only(getattr(argument, field.name)))
     return argument
+
+
+def _bytes(argument: Any) -> Any:
+    return argument.tobytes() if isinstance(argument, np.ndarray) else None
 
 
 def _writing_error(where: str, function: Any) -> FunctionError:

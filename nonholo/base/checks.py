@@ -341,8 +341,10 @@ def takes(function: Callable[..., Any], count: int) -> bool:
 def _binds(function: Callable[..., Any], count: int) -> bool:
     try:
         inspect.signature(function).bind(*range(count))
-    except (TypeError, ValueError) as failure:
-        return isinstance(failure, ValueError)
+    except TypeError:
+        return False
+    except ValueError:
+        return True
     return True
 
 

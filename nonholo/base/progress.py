@@ -156,14 +156,18 @@ def progress_bar(title: str, is_visible: bool) -> contextlib.AbstractContextMana
     return _shown_bar(title) if is_visible else _SILENT
 
 
-@contextlib.contextmanager
-def telling(title: str, is_visible: bool) -> Iterator[None]:
+def telling(title: str, is_visible: bool) -> contextlib.AbstractContextManager[Any]:
     """Show what the work inside tells.
 
     Example:
         >>> with telling("time", is_visible=False):
         ...     tell(3.0, 10.0)
     """
+    return _telling(title, is_visible) if is_visible or _report.get() is not go_on else _SILENT
+
+
+@contextlib.contextmanager
+def _telling(title: str, is_visible: bool) -> Iterator[None]:
     with progress_bar(title, is_visible) as report, setting(_report, report):
         yield
 

@@ -116,7 +116,8 @@ class EnsembleTask:
         """Run a block of members and reduce it; under forces that differ one by one."""
         if of_forces := [name for name in block if _names.is_force_number(self.discrete.system, name)]:
             return join_results([([member], self._member(block, member, of_forces)) for member in range(block.count)])
-        parameters = {name: block[name] for name in block if name in numbers_of(self.discrete)}
+        numbers = numbers_of(self.discrete)
+        parameters = {name: block[name] for name in block if name in numbers}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         run |= _rows_of_starts(self.start, block)
         with _names.numbering(lambda member: block.first + member):

@@ -26,6 +26,8 @@ _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are dou
 Stepper: TypeAlias = AbstractStepper[Any]
 Report: TypeAlias = Callable[[int, int], object]
 """Takes how many steps are done, and of how many."""
+Searched: TypeAlias = tuple[State, int, int, Watch]
+"""The state after the last good step, how many steps were good, the outcome, and what was seen."""
 
 
 class Run(NamedTuple):
@@ -207,12 +209,8 @@ def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, rep
     return _orbit_of(stepper, table, plan, standing), standing
 
 
-def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Any:
-    """Take single steps up to an event that ends the motion, or through the step with an impact; search them.
-
-    Returns:
-        The state after the last good step, how many steps were good, the outcome, and what was seen.
-    """
+def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Searched:
+    """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
     step, steps = stretch
     if watch.is_at_wall:
         write_first(state, room)
@@ -227,8 +225,8 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
     return state, states - 1, code, watch
 
 
-def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Any:
-    """Do the same with the step from a node at a wall, or what is left of that with the impact that was seen last."""
+def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Searched:
+    """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
     node, good = state.copy(), 0 if watch.reset_by is None else watch.cut - step
     keep_row(node, room, good)
     there = orbit_at(stepper, node, step + good)
