@@ -64,7 +64,7 @@ RULES: tuple[Rule, ...] = (
         "events|events in *|crossings|ensemble with events|impacts",
         "rule",
         "A step to a value that is not the principal one has no parts that begin at its state: Proposition 13.3.",
-        "part of a step",
+        "parts? of a step",
     ),
     Rule("impacts", "wide", "The normal of a gap is taken along a basis of 44,850 dimensions.", "have a normal"),
     Rule(
