@@ -55,9 +55,10 @@ class TracedFunction:
         with jax.enable_x64(True):  # of a function of its own: JAX remembers those that it has traced
             self.program = jax.make_jaxpr(jax.jit(lambda *x: _array(function(*x))))(*arguments)
         self.shape, self.is_of_one_step = self.program.out_avals[0].shape, getattr(function, "is_of_one_step", False)
-        for each in _programs_in(self.program):
-            each.consts[:] = map(copy.deepcopy, each.consts)
-        self.constants = [x for each in _programs_in(self.program) for x in each.consts]
+        lists = [each.consts for each in _programs_in(self.program) if hasattr(each, "consts")]
+        for each in lists:
+            each[:] = map(copy.deepcopy, each)
+        self.constants = [x for each in lists for x in each]
 
     def __call__(self, *arguments: Any) -> Any:
         """Return the value."""
@@ -67,6 +68,11 @@ class TracedFunction:
             return self.function(*arguments)
         leaves = (jnp.asarray(x, float) for x in leaves)
         return jaxpr_as_fun(self.program)(*leaves)[0]
+
+    @property
+    def primitives(self) -> set[str]:
+        """The names of all operations that the program applies, with those of programs that it calls."""
+        return {step.primitive.name for each in _programs_in(self.program) for step in each.eqns}
 
     def __repr__(self) -> str:
         return repr(self.function)
@@ -94,10 +100,9 @@ class TracedFunction:
 
 
 def _programs_in(program: Any) -> Iterator[Any]:
-    """Yield the programs with constants: this one, and those that it calls."""
-    if hasattr(program, "consts"):
-        yield program
-    for step in getattr(program, "jaxpr", program).eqns:
+    """Yield this program and those that it calls."""
+    yield program
+    for step in program.eqns:
         for inner in jax.tree.leaves(list(step.params.values())):
             if hasattr(inner, "eqns"):
                 yield from _programs_in(inner)

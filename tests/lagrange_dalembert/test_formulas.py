@@ -14,9 +14,11 @@ from jax import lax
 
 import nonholo as nh
 from nonholo.base.numerics import double_precision
+from nonholo.base.traced import TracedFunction
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import _run
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.compiled._translation import DIFFERENTIABLE
 from nonholo.lagrange_dalembert.functions import ForceTable
 
 EPS = np.finfo(float).eps
@@ -85,6 +87,22 @@ def test_primitives(order: str, name: str) -> None:
     expected = by_jax(function, x, y)
     assert doubt == 0
     assert np.abs(values - expected).max() <= 100 * EPS * max(1.0, np.abs(expected).max())
+
+
+def test_operations_that_are_not_asked_for_have_derivatives() -> None:
+    """JAX makes gradients of functions with each operation whose derivative a Lagrangian is not asked for."""
+
+    def others(x: Any, y: Any) -> Any:
+        return (
+            lax.clamp(-1.0, x, 1.0) + jnp.where(jnp.isfinite(x), y, 0) + lax.stop_gradient(y) * jnp.copy(x[y.argmax()])
+        )
+
+    vector, names = jax.ShapeDtypeStruct((3,), float), {"pjit", "expand_dims", *OPERATIONS}
+    for function in (*FUNCTIONS.values(), others):
+        gradient = jax.grad(lambda x, y, function=function: jnp.sum(jnp.sin(function(x, y))))
+        names |= TracedFunction(function, (vector, vector)).primitives
+        names |= TracedFunction(gradient, (vector, vector)).primitives
+    assert names >= DIFFERENTIABLE
 
 
 @pytest.mark.parametrize("name", OTHERS)

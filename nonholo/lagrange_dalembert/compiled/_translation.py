@@ -319,3 +319,5 @@ _TABLE: dict[str, Rule] = {
     "unstack": lambda _f, x, *, axis: list(np.moveaxis(x, axis, 0)),
     "stack": lambda _f, *arrays, axis: np.stack(arrays, axis),
 }
+DIFFERENTIABLE = {*_TABLE, "jit", "pjit"} - {"scatter", "platform_index"}
+"""Operations that JAX differentiates wherever they stand; of others it depends on their arguments."""

@@ -10,7 +10,6 @@ from nonholo.lagrange_dalembert.functions._system import (
     in_rows,
     place,
     places,
-    room,
 )
 from nonholo.lagrange_dalembert.functions._traced import (
     LOOK_UP,
@@ -18,6 +17,7 @@ from nonholo.lagrange_dalembert.functions._traced import (
     ForceTable,
     checked_rows,
     checked_value,
+    room,
     takes_time,
     trace,
     with_parameters,

@@ -6,7 +6,6 @@ Calls of JAX are compiled once for all of their numbers. Every call runs in a lo
 import dataclasses
 import difflib
 import functools
-import importlib
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, Self
 
@@ -286,7 +285,7 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
 
     def discrete_map(self: Any, time_step: Any) -> systems.DiscretizationT:
         """Return the discretized system, see `nonholo.discretize`."""
-        return room("_discretization").MAPS[self.orbits](self, time_step)
+        return traced.room("_discretization").MAPS[self.orbits](self, time_step)
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -318,12 +317,6 @@ SYSTEM = "a system in coordinates"
 @functools.cache
 def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
     return jax.jit(lambda family, numbers, *arguments: function(family.bound(*numbers), *arguments), static_argnums=0)
-
-
-@functools.cache
-def room(name: str) -> Any:
-    """Return a module that imports the caller's, or that loads slowly because of diffrax."""
-    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
 def configurations(system: Any, places: Any) -> Any:

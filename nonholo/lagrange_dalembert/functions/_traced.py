@@ -5,6 +5,7 @@ Tables of forces: a row for each step, which JAX and formulas look up.
 
 import dataclasses
 import functools
+import importlib
 import inspect
 import operator
 from collections.abc import Callable, Mapping
@@ -21,6 +22,12 @@ from nonholo.base.traced import TracedFunction, rows_above
 from nonholo.base.types import Array, Float, Int
 
 _END = 120  # letters of either end of a long message
+
+
+@functools.cache
+def room(name: str) -> Any:
+    """Return a module that imports the caller's, or that loads slowly because of diffrax."""
+    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
 def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> TracedFunction:
@@ -71,7 +78,7 @@ def checked_value(
     if result.shape != shape:
         demand = "a scalar" if shape == () else f"an array of shape {shape}"
         raise error(where, f"return {demand}", f"shape {result.shape}", f"It is called with arrays of {arrays}.")
-    if shape == ():
+    if shape == () and not result.primitives <= room("compiled._translation").DIFFERENTIABLE:
         numbers = tuple(i for i, each in enumerate(arguments) if hasattr(each, "shape"))
         with double_precision():
             _attempt(where, of, lambda: jax.make_jaxpr(jax.grad(result, numbers))(*arguments))
