@@ -223,16 +223,6 @@ def test_events_within_steps(name: str) -> None:
     assert np.allclose(result.states.configuration, expected.states.configuration, rtol=0, atol=1e-9)
 
 
-@pytest.mark.profile("routes", keep=["top", "plane sleigh"])
-@pytest.mark.parametrize("name", ["top", "plane sleigh", "balanced sleigh", "top on SO(4)"])
-def test_single_steps(name: str) -> None:
-    """`step` gives the second state of a run, whichever closed form JAX traces."""
-    orbit, discrete = _run(SYSTEMS[name], steps=1), nh.discretize(SYSTEMS[name], 0.2)
-    after = nh.step(discrete, _start(SYSTEMS[name]))
-    assert np.allclose(after.momentum, orbit.momentum[1], rtol=1e-12, atol=1e-12)
-    assert np.allclose(after.displacement, orbit.displacement[1], rtol=1e-12, atol=1e-12)
-
-
 def test_a_sleigh_without_a_moment_about_its_center_goes_by_matrices() -> None:
     """A point mass ahead of the blade may move, but is no body of the closed form, which divides by J."""
     point = np.array([0.5, 0.0, 1.0])
