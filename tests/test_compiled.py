@@ -181,17 +181,3 @@ def test_a_user_who_can_write_nowhere(temporary: bool, home_is: str | None, home
         assert len(done.stderr.splitlines()) == 1
     assert [path.name for path in scratch.iterdir()] == ["nonholo-65534"] * temporary
     assert sorted(path.name for path in home.iterdir()) == ["run.zarr", "scratch"]
-
-
-@pytest.mark.profile("faults", instead="test_damaged_code_is_compiled_again")
-def test_runs_with_damaged_code(tmp_path: Path, home: Path) -> None:
-    """A run of kernels of which every file is damaged, each in another way, gives the same bits and mends them."""
-    own = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "NONHOLO_KERNELS": "numba"}
-    run, outputs = [sys.executable, "-c", USE], []
-    for _ in range(2):
-        done = subprocess.run(run, cwd=home, env=own, capture_output=True, text=True, check=True)  # noqa: S603
-        outputs.append((done.stdout, done.stderr))
-        for number, file in enumerate(sorted(tmp_path.rglob("*.nbc"))):
-            file.write_bytes(list(DAMAGE.values())[number % len(DAMAGE)](file.read_bytes()))
-    assert outputs[0] == outputs[1]
-    assert outputs[0][1] == ""

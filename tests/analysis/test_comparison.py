@@ -32,14 +32,6 @@ def flow(name: str, *times: float, **changes) -> nh.Orbit:  # noqa: ANN003
     return nh.flow(system, body_velocity=velocity, times=times or (0.0, 4.0), **changes)
 
 
-def test_an_orbit_has_no_error_against_itself() -> None:
-    """All three errors are zero at all of its times."""
-    orbit = run("sleigh", 0.1)
-    against = nh.compare(orbit, orbit)
-    assert np.array_equal(against.time, orbit.time)
-    assert against.largest == (0.0, 0.0, 0.0)
-
-
 @pytest.mark.profile("routes", cases=["free", "veselova"])
 @pytest.mark.parametrize("name", STARTS)
 def test_errors_are_those_of_the_definition(name: str) -> None:

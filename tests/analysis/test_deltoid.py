@@ -74,13 +74,6 @@ def test_resting_ellipse_has_no_translation(sleigh: nh.ChaplyginSleigh) -> None:
     assert np.allclose(deltoid(discrete).resting(13), expected, atol=1e-13)
 
 
-def test_steps_of_an_orbit_are_counted_once() -> None:
-    """A slow orbit, whose momenta satisfy the sharp bound of the theory page, has one real value at every step."""
-    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-    orbit = nh.simulate(sleigh, body_velocity=(0.3, -1.0, 0.0), steps=50)
-    assert np.all(deltoid(sleigh).real_branches(orbit.restricted_momentum) == 1)
-
-
 # Tops and balanced sleighs.
 test_refuses_other_systems = refusals(
     (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), r"`deltoid\(discrete=...\)` must be of a sleigh in the plane"),

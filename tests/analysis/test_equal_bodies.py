@@ -169,6 +169,8 @@ def _turning(map_: nh.Discretization, times: np.ndarray, w: np.ndarray) -> np.nd
 
 
 ANSWERS = {
+    "run": lambda one, w: _short_run(one, w).chart,
+    "multipliers": lambda one, w: _short_run(one, w).multipliers,
     "step": lambda one, w: nh.step(one, one.system.restricted_momentum(w)).momentum,
     "definition": lambda one, w: _short_run(one, w, backend="jax").momentum,
     "rollout": lambda one, w: nh.rollout(one, restricted_velocity=w, steps=5).configuration,

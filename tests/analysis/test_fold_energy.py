@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 import scipy
+from analysis.equations import momenta_of_energy
 
 import nonholo as nh
 from nonholo.analysis._critical_energies import fold_energy, over_directions
@@ -44,11 +45,6 @@ def _body(sigma: float, ratio: float, angle: float) -> tuple[np.ndarray, np.ndar
 
 def _bound(sigma: float) -> float:
     return 1 - max(0.0, 3 * sigma - 1) ** 3 * (1 + sigma) / (16 * sigma)
-
-
-def _momenta(discrete: nh.Discretization, energy: float, angles: np.ndarray) -> np.ndarray:
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    return circle @ np.linalg.cholesky(discrete.system.constrained_inertia).T * np.sqrt(2 * energy)
 
 
 class Twin:
@@ -146,7 +142,8 @@ def test_the_inner_displacement_is_not_unique_below_the_saddle() -> None:
     assert reference.regular
     assert reference.fold < level < reference.saddle
     regions = [
-        nh.displacements_over(top, r).region.tolist() for r in _momenta(top, level, np.linspace(0.0, 2 * np.pi, 101))
+        nh.displacements_over(top, r).region.tolist()
+        for r in momenta_of_energy(top.system, level, np.linspace(0.0, 2 * np.pi, 101))
     ]
     assert {row.count("inner") for row in regions} == {1, 3}
     orbit = nh.simulate(top, momentum=[-0.34187683576850936, 0.21427098809515754], steps=50, throw=False)
@@ -163,7 +160,7 @@ def test_below_the_fold_every_principal_orbit_goes_on(name: str) -> None:
     """At 0.9999 of the energy 50 principal orbits continue; in the regular regime there is one inner value."""
     top = _discrete(name, 0.5)
     level = 0.9999 * nh.critical_energies(top).fold
-    for r in _momenta(top, level, np.linspace(0.1, 6.3, 50)):
+    for r in momenta_of_energy(top.system, level, np.linspace(0.1, 6.3, 50)):
         assert nh.asymptotics(nh.simulate(top, momentum=r, steps=40)[:1]).persists
         if name in REGULAR:
             values = nh.displacements_over(top, r)
@@ -174,7 +171,7 @@ def test_below_the_fold_every_principal_orbit_goes_on(name: str) -> None:
 def test_rules_that_are_not_known_to_persist() -> None:
     """What is known of principal orbits is not said of another rule, nor of a composition; limits remain."""
     top = _discrete(THREE)
-    r = _momenta(top, 0.5 * nh.critical_energies(top).fold, np.array([1.0]))[0]
+    r = momenta_of_energy(top.system, 0.5 * nh.critical_energies(top).fold, np.array([1.0]))[0]
     other = nh.asymptotics(nh.simulate(top, momentum=r, steps=3, branch="largest"))
     composed = nh.asymptotics(nh.simulate(nh.discretize(top.system, 1.0, order=4), momentum=r / 9, steps=3))
     near = nh.asymptotics(nh.simulate(top, momentum=r, steps=3, branch="nearest"))
@@ -239,13 +236,6 @@ def test_fold_scales_and_turns_with_the_body() -> None:
     turned = nh.SuslovTop(turn @ np.array(BODIES[THREE]) @ turn.T, axis=turn[:, 2])
     one, other = (nh.critical_energies(nh.discretize(top, h)) for top, h in ((_top(THREE), 1.0), (turned, 0.25)))
     assert [other.fold, other.line] == pytest.approx([16 * one.fold, 16 * one.line], rel=1e-11)
-
-
-def test_a_balanced_body_has_no_line() -> None:
-    """For c = 0 the folds are the ridge: the fold is the saddle, and no energy is above all equilibria."""
-    balanced = nh.critical_energies(nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 0.5])), 0.3))
-    assert balanced.fold == balanced.saddle
-    assert balanced.line is None
 
 
 def test_the_line_of_equilibria_ends_between_saddle_and_center() -> None:

@@ -189,18 +189,6 @@ def test_orbits_run_on_their_curve(discrete: nh.Discretization) -> None:
             assert np.abs(curve.over(point[0]) - point).max(axis=1).min() < 1e-10
 
 
-def test_all_branches_stay_on_the_curve() -> None:
-    """The rational body with four real branches: the points over all of them have one energy and are on one level."""
-    top = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
-    charts = np.array([[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]])
-    energies = top.system.constrained_energy(top.system.restrict(nh.discrete_legendre(top, top.displaced(charts))))
-    assert np.allclose(energies, energies[0], rtol=1e-8)  # the digits of the charts
-    curve = nh.invariant_curve(top, energies[0])
-    for y in charts:
-        z = np.array([1.0, *y]) / np.sqrt(1 + y @ y)
-        assert np.abs(curve.over(np.arctan2(y[1], y[0])) - z).max(axis=1).min() < 1e-7
-
-
 def test_refuses_an_energy_that_is_not_positive() -> None:
     """Energy zero is a point and not a curve: refused in words."""
     with pytest.raises(ValueError, match=r"`invariant_curve\(energy=...\)` must be positive"):

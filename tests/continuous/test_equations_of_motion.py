@@ -11,7 +11,6 @@ from references import golden
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 TIMES = np.linspace(0.0, 3.0, 7)
@@ -88,16 +87,6 @@ def test_vector_field_under_jax(problem: Problem) -> None:
         result = np.asarray(jax.jit(field)(0.0, states))
     assert np.abs(result - expected).max() <= 1e-13 * np.abs(expected).max()
     assert np.abs(field(0.0, states) - expected).max() <= 1e-14 * np.abs(expected).max()
-
-
-@pytest.mark.parametrize("group", [nh.SO(3), nh.SE(2)], ids=str)
-def test_pose_rate(group: AbstractMatrixGroup) -> None:
-    """The rate of a compact pose is its central difference along g exp(t x), to the error of order t^2."""
-    rng, step = np.random.default_rng(5), 1e-5
-    for _ in range(5):
-        g, x = group.random(rng), rng.normal(size=3)
-        before, pose, after = (group.pose_from_matrix(g @ group.exp(t * x)) for t in (-step, 0.0, step))
-        assert np.abs((after - before) / (2 * step) - group.pose_rate(pose, x)).max() <= 1e-9
 
 
 def test_vector_field_differentiates_with_respect_to_the_body() -> None:

@@ -299,25 +299,3 @@ test_what_has_no_values_is_refused = refusals(
     (lambda: nh.fold_distance(_sleigh(0.5), nh.SE(2).exp(np.array([0.1, 0.2, 0.3]))), _OFF),
     (lambda: nh.branches(_sleigh(0.5), displacement=_SPURIOUS), _OFF),
 )
-
-
-def test_four_real_branches() -> None:
-    """The rational equilibrium y = (-1/4, -3/8) of docs/theory/branches.md has four real values."""
-    discrete = nh.discretize(nh.SuslovTop([[1.25, 0, -0.5], [0, 1, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
-    rows = discrete.system.constraint_subspace
-    W = discrete.system.group.cayley(2 * np.array([-0.25, -0.375]) @ rows)
-    result = nh.branches(discrete, displacement=W)
-    assert result.is_real.all()
-    y = result.displacement[:, :2, 2] / (1 + result.displacement[:, 2:, 2])
-    expected = [[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]]
-    np.testing.assert_allclose(y, expected, rtol=0, atol=6e-9)  # eight decimals
-
-
-@pytest.mark.parametrize(("at", "real"), [((0.1, -0.5), 3), ((-1.0, 0.1), 3), ((0.4, 0.9), 1), ((1.5, -0.5), 1)])
-def test_sum_rule_of_the_sleigh(at: tuple[float, float], real: int) -> None:
-    """The angles of the three branches, complex ones included, sum to 0 mod 2 pi, their unit numbers to kappa."""
-    result = nh.displacements_over(_sleigh(0.5, 0.2), [at[0] - 0.2 * _at(*at)[1], _at(*at)[1]])
-    turns = result.displacement[:, 0, 0] + 1j * result.displacement[:, 1, 0]
-    assert np.prod(turns) == pytest.approx(1, abs=1e-13)
-    assert turns.sum() == pytest.approx(-(2 * at[1] + 1) + 2j * at[0], abs=1e-13)
-    assert result.is_real.sum() == real

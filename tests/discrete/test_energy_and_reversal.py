@@ -1,7 +1,5 @@
 """What the matrix/skew step keeps at any step size and in long runs: energy, reversibility, group, constraint."""
 
-from fractions import Fraction
-
 import mpmath
 import numpy as np
 import pytest
@@ -76,22 +74,13 @@ def growth(system: nh.LLSystem, velocity: np.ndarray, steps: int) -> float:
     """Return the largest relative energy error of a run with the time step one, without rounding of the energy."""
     discrete = nh.discretize(system, 1.0)
     orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=steps, save_every=steps // 10, reconstruct=False)
-    D, J = exact(system.group.hat(system.constraint_subspace)), exact(system.homogeneous_mass_tensor)
+    exact = np.vectorize(mpmath.mpf, otypes=[object])
     with mpmath.workdps(40):
-        inertia = mpmath.matrix([[number(((a @ J) * b).sum()) for b in D] for a in D])
-        momenta = [mpmath.matrix(list(map(number, exact(r)))) for r in orbit.restricted_momentum]
+        D, J = exact(system.group.hat(system.constraint_subspace)), exact(system.homogeneous_mass_tensor)
+        inertia = mpmath.matrix([[((a @ J) * b).sum() for b in D] for a in D])
+        momenta = [mpmath.matrix(r.tolist()) for r in orbit.restricted_momentum]
         energies = [(r.T * mpmath.lu_solve(inertia, r))[0] for r in momenta]
         return float(max(abs(e / energies[0] - 1) for e in energies))
-
-
-def exact(matrix: np.ndarray) -> np.ndarray:
-    """Return the same numbers as fractions."""
-    return np.vectorize(Fraction, otypes=[object])(matrix)
-
-
-def number(x: Fraction) -> mpmath.mpf:
-    """Return a fraction with the digits of mpmath."""
-    return mpmath.mpf(x.numerator) / x.denominator
 
 
 def test_general_rows_on_a_motion_group() -> None:

@@ -18,13 +18,6 @@ class Unwilling:
         raise TypeError("no array")
 
 
-def _nested(depth: int) -> list[Any]:
-    result: list[Any] = [1.0]
-    for _ in range(depth):
-        result = [result]
-    return result
-
-
 def _in_itself() -> list[Any]:
     result: list[Any] = [1.0]
     result.append(result)
@@ -79,8 +72,7 @@ CONSTANT: dict[str, Callable[[], Any]] = {
     "list of one": lambda: [0.3],
     "ragged": lambda: [[1.0, 2.0], [3.0]],
     "ragged arrays": lambda: [np.zeros(2), np.zeros(3)],
-    "nested 50": lambda: _nested(50),
-    "nested 2000": lambda: _nested(2000),
+    **{f"nested {n}": lambda n=n: functools.reduce(lambda inner, _: [inner], range(n), [1.0]) for n in (50, 2000)},
     "in itself": _in_itself,
     "dict": lambda: {"a": 1.0},
     "empty dict": dict,
@@ -111,20 +103,6 @@ def _entry(value: np.ndarray, entry: Any) -> np.ndarray:
     return changed
 
 
-def _structured(value: np.ndarray) -> np.ndarray:
-    return np.array([(x,) for x in value.flat], dtype=[("a", float)]).reshape(value.shape)
-
-
-def _strided(value: np.ndarray) -> np.ndarray:
-    return np.repeat(value, 2, axis=-1)[..., ::2] if value.ndim else value
-
-
-def _read_only(value: np.ndarray) -> np.ndarray:
-    value = value.copy()
-    value.setflags(write=False)
-    return value
-
-
 def _with_none(value: np.ndarray) -> np.ndarray:
     changed = value.astype(object)
     changed.flat[: min(1, changed.size)] = None
@@ -148,9 +126,9 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "as a matrix": lambda v: v.view(np.matrix) if v.ndim == 2 else v,
     "masked in part": lambda v: np.ma.array(v, mask=np.arange(v.size).reshape(v.shape) == 0),
     "masked nowhere": lambda v: np.ma.array(v),
-    "as a structure": _structured,
-    "read-only": _read_only,
-    "strided": _strided,
+    "as a structure": lambda v: np.array([(x,) for x in v.flat], dtype=[("a", float)]).reshape(v.shape),
+    "read-only": lambda v: np.broadcast_to(v.copy(), v.shape),
+    "strided": lambda v: np.repeat(v, 2, axis=-1)[..., ::2] if v.ndim else v,
     "by columns": np.asfortranarray,
     "reversed": lambda v: v[::-1] if v.ndim else v,
     "transposed": lambda v: v.T,

@@ -27,27 +27,15 @@ def of_exception(failure: BaseException, names: list[str]) -> Verdict:
     message = f"{type(failure).__name__}: {failure}"[:300]
     if isinstance(failure, MemoryError):
         return Verdict("memory", message)
-    if not _is_ours(failure):
-        return Verdict("raw", f"{message} [{_place(failure)}]")
-    return Verdict("refused", message, any(f"{name}=" in str(failure) for name in names))
-
-
-def _is_ours(failure: BaseException) -> bool:
-    """Our errors name their owner between backticks; those of files and of outcomes are raised by name in our files."""
-    if isinstance(failure, ValueError | TypeError) and str(failure).startswith("`"):
-        return True
-    return isinstance(failure, OSError | RuntimeError | ImportError) and _raised_by_us(failure)
-
-
-def _raised_by_us(failure: BaseException) -> bool:
     frames = traceback.extract_tb(failure.__traceback__)
-    return bool(frames) and _OWN_FILES in frames[-1].filename and (frames[-1].line or "").startswith("raise")
-
-
-def _place(failure: BaseException) -> str:
-    """Return the last line of ours on the way to a failure."""
-    ours = [frame for frame in traceback.extract_tb(failure.__traceback__) if _OWN_FILES in frame.filename]
-    return f"{ours[-1].filename.rpartition(_OWN_FILES)[2]}:{ours[-1].lineno}" if ours else ""
+    ours = [frame for frame in frames if _OWN_FILES in frame.filename]
+    raised_by_us = bool(ours) and ours[-1] is frames[-1] and (frames[-1].line or "").startswith("raise")
+    # our errors name their owner between backticks; those of files and of outcomes are raised by name in our files
+    is_named = isinstance(failure, ValueError | TypeError) and str(failure).startswith("`")
+    if is_named or (raised_by_us and isinstance(failure, OSError | RuntimeError | ImportError)):
+        return Verdict("refused", message, any(f"{name}=" in str(failure) for name in names))
+    place = f"{ours[-1].filename.rpartition(_OWN_FILES)[2]}:{ours[-1].lineno}" if ours else ""
+    return Verdict("raw", f"{message} [{place}]")
 
 
 def nonfinite(result: Any, *, infinite: bool = False) -> set[str]:

@@ -162,21 +162,19 @@ def figures(family: str, count: int, seed: int, restarts: bool = False, names: t
 
 
 def _undisturbed(family: str, name: str, home: Path) -> tuple[str, float]:
-    """Return the hash of a run that nobody disturbs, and the seconds that it takes once all is compiled."""
-    _compile(family, name)
-    begin = time.monotonic()
-    in_a_child(go_on, family, name, home / f"{name}.zarr")
-    seconds = time.monotonic() - begin
-    return in_a_child(print_of, family, home / f"{name}.zarr"), seconds
+    """Return the hash of a run that nobody disturbs, and the seconds that it takes once all is compiled.
 
-
-def _compile(family: str, name: str) -> None:
-    """Compile before the first fork, in one thread."""
+    That is done before the first fork, in one thread.
+    """
     if family == "orbit":
         discrete, run, events = RUNS[name]
         nh.simulate(discrete, **run | {"steps": 100}, events=events)
     elif name == "tops":
         faults.TOPS(nh.MemberBlock(0, 1, 0, SWEEPS[name][1].values(0, 1)))
+    begin = time.monotonic()
+    in_a_child(go_on, family, name, home / f"{name}.zarr")
+    seconds = time.monotonic() - begin
+    return in_a_child(print_of, family, home / f"{name}.zarr"), seconds
 
 
 def all_figures(trials: int, restarts: int, seed: int, only: str | None = None) -> dict[str, Any]:

@@ -94,7 +94,8 @@ def draw(family: str, rng: np.random.Generator) -> Case:
     system = FAMILIES[family](rng)
     h = 10.0 ** rng.uniform(-3, 0.5)
     equations, size = equations_of(system)
-    turns = 10.0 ** rng.uniform(-6, 0.7, (_MEMBERS, 1)) * _directions(system, rng)
+    sizes, x = 10.0 ** rng.uniform(-6, 0.7, (_MEMBERS, 1)), rng.normal(size=(_MEMBERS, system.rank))
+    turns = sizes * (x / np.linalg.norm(x, axis=1, keepdims=True))
     r = h * system.restricted_momentum(turns / h) / size
     path = followed(equations, r[::5])  # one in five members is brought near its fold, where it has one
     near = np.where(path.folded, path.s * (1 - 10.0 ** rng.uniform(-16, -1, len(path.s))), 1.0)
@@ -104,11 +105,6 @@ def draw(family: str, rng: np.random.Generator) -> Case:
     discrete = nh.discretize(_in_units(system, units), h)
     batch = nh.ensemble(discrete, steps=_STEPS, restricted_velocity=turns / h, save_every=1)
     return Case(equations, h, size * units, batch, r)
-
-
-def _directions(system: Any, rng: np.random.Generator) -> np.ndarray:
-    x = rng.normal(size=(_MEMBERS, system.rank))
-    return x / np.linalg.norm(x, axis=1, keepdims=True)
 
 
 def _in_units(system: Any, units: float) -> Any:

@@ -6,7 +6,6 @@ definition. Nothing of the library is imported here.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
@@ -60,7 +59,7 @@ class Motion:
         friction = exact(C if np.ndim(C) == 2 else np.diag(C or np.zeros(len(basis))))
         self.friction = whole(back @ S @ friction @ S.T)
         self.levers, self.force, self.hats = whole(back @ (hats @ place)), whole(force), whole(hats)
-        self.size, self.place, self.inertia = len(place), whole(place), whole(S @ momenta)
+        self.size = len(place)
 
     def expanded(self, w: Any, g: Any, shift: int) -> tuple[list[Any], list[Any]]:
         """Return the terms of a step of 2^-shift."""
@@ -85,33 +84,24 @@ class Motion:
             w, g = sum(ws[1:], ws[0]), sum(gs[1:], gs[0])
         return result
 
-    def energy(self, w: Any, g: Any) -> Any:
-        """Return T + U."""
-        kinetic = (((self.inertia @ w) >> BITS) @ w) // 2 >> BITS
-        return kinetic - ((self.force @ ((g @ self.place) >> BITS)) >> BITS)
-
 
 def main() -> None:
     """Solve every case with two lengths of steps, and write it."""
     mp.dps, written = 90, []
     for case in CASES:
-        begun, (name, group, tensor, rows, velocity, F, point, C) = time.time(), case
+        name, group, tensor, rows, velocity, F, point, C = case
         motion = Motion(case)
         result, other = (motion.solved(velocity, unit) for unit in STEPS)
-        bound = mpf(10) ** -45
         for one, two in zip(result, other, strict=True):
             gap = max(np.abs(a - b).max() for a, b in zip(one, two, strict=True))
-            require(mp.ldexp(mpf(gap), -BITS), f"{name}: two lengths of steps", bound)
-            if not C:
-                change = motion.energy(*one) - motion.energy(*result[0])
-                require(mp.ldexp(mpf(abs(change)), -BITS), f"{name}: energy", bound)
+            require(mp.ldexp(mpf(gap), -BITS), f"{name}: two lengths of steps", mpf(10) ** -45)
         states = [[decimals(number * mp.ldexp(1, -BITS)) for number in state] for state in result]
         written.append(
             {"name": name, "group": group, "mass_tensor": tensor, "constraint_subspace": rows, "friction": C}
             | {"force": F, "point": point, "restricted_velocity": velocity, "times": TIMES}
             | {"restricted_velocities": [w for w, _ in states], "configurations": [g for _, g in states]}
         )
-        print(f"{name}: {time.time() - begun:.0f} s")
+        print(name)
     write_cases(Path(__file__).with_name("linear_forces.json"), written)
 
 

@@ -124,19 +124,6 @@ def test_poses_and_energy_over_many_steps(make) -> None:  # noqa: ANN001
     assert np.abs(rotations @ rotations.T - np.eye(system.group.n)).max() <= 1e-12
 
 
-def test_arrowheads_are_dense_bodies() -> None:
-    """An arrowhead moves as the same body with its mass tensor as a matrix, multipliers included."""
-    rng = np.random.default_rng(5)
-    for system in (nh.SuslovTop.arrowhead(rng.uniform(1, 2, 5), 0.2 * rng.normal(size=4)), arrowhead(4, rng)):
-        velocity = rng.normal(size=system.rank)
-        one, two = (
-            nh.simulate(nh.discretize(body, 0.2), restricted_velocity=velocity, steps=50)
-            for body in (system, system.dense)
-        )
-        for name in ("momentum", "configuration", "multipliers", "energy", "body_velocity", "chart"):
-            assert np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=1e-12), name
-
-
 def test_a_hundred_thousand_dimensions() -> None:
     """Momenta, charts and energy of SO(100000) need no matrix; energy is exact."""
     n, rng = 100_000, np.random.default_rng(0)

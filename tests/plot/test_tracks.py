@@ -118,10 +118,6 @@ def test_axes_are_left_out_where_the_orbit_is_not_near() -> None:
     assert drawn.axis_before is drawn.axis_after is None
 
 
-PLANAR = {
-    "driven_sleigh": "theta", "knife_edge_on_incline": "phi", "roller_racer": "theta", "rolling_disk": "phi",
-    "snakeboard": "theta", "twistcar": "theta", "two_wheeled_robot": "theta",
-}  # fmt: skip
 CART = [[(-0.1, -0.2), (0.3, 0.0), (-0.1, 0.2)], [(0.0, 0.2), (0.1, 0.2)]]
 
 
@@ -176,15 +172,6 @@ def test_small_bodies_are_drawn_larger() -> None:
 def test_without_heading_there_is_a_path() -> None:
     """A point has no outline."""
     assert nh.plot.point_track(_orbit(_free(heading=None))).frames == ()
-
-
-@pytest.mark.parametrize("name", PLANAR)
-def test_ready_systems_in_the_plane_have_bodies(name: str) -> None:
-    """Each has its heading, and an outline as large as its lengths say."""
-    ready = getattr(nh.examples, name)()
-    assert ready.system.heading == PLANAR[name]
-    parts = ready.system.parts(ready.configuration)
-    assert 0.3 < max(np.linalg.norm(part, axis=1).max() for part in parts) < 2.0
 
 
 # Before anything runs, with the argument and what it takes.

@@ -10,7 +10,7 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo import LLSystem, MultidimensionalSleigh, RigidBody, SuslovTop, reference_point_subspace
-from nonholo.systems import SYSTEMS, AbstractLLSystem, inertia_from_mass_tensor
+from nonholo.systems import SYSTEMS, AbstractLLSystem
 
 
 def _points(n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -214,20 +214,7 @@ def test_lengths_in_any_unit(length: float) -> None:
     assert np.all(np.linalg.eigvalsh(sleigh.constrained_inertia / np.outer(unit, unit)) > 0.5)
 
 
-J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 INERTIA = np.array([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]])
-
-
-def test_inertia_operators_against_their_definitions() -> None:
-    """The top's is its inertia tensor, the sleigh's the quadratic form of the kinetic energy of a moving body."""
-    operator = nh.SuslovTop(J).inertia_operator
-    assert np.allclose(operator, inertia_from_mass_tensor(nh.SO(3), J), rtol=0, atol=1e-15)
-    m, inertia, a, b = 2.0, 1.0, 0.5, 0.3
-    omega, v1, v2 = velocity = np.array([0.7, -0.4, 0.9])
-    center = np.array([v1 - omega * b, v2 + omega * a])
-    kinetic = (inertia * omega**2 + m * center @ center) / 2
-    sleigh = nh.ChaplyginSleigh(m, inertia, a, b)
-    assert velocity @ sleigh.inertia_operator @ velocity / 2 == pytest.approx(kinetic, rel=1e-15)
 
 
 def test_from_inertia_keeps_the_documented_rows() -> None:

@@ -2,22 +2,12 @@
 
 import numpy as np
 import pytest
-from forms import FORMS, tensor
+from forms import FORMS
 from refusals import refusals
 
 import nonholo as nh
 
 _GROUP = FORMS["SO(2,1)"]
-
-
-@pytest.mark.parametrize("name", FORMS)
-def test_the_inertia_operator(name: str) -> None:
-    """I_ij = tr(E_i J E_j*) = -tr(E_i J E_j), symmetric, and the same along d."""
-    group, rng = FORMS[name], np.random.default_rng(0)
-    one = nh.LLSystem(group, tensor(group, rng), np.eye(group.dim))
-    expected = -np.einsum("iab,bc,jca->ij", group.basis, one.mass_tensor, group.basis)
-    assert np.abs(one.inertia_operator - expected).max() < 1e-13 * np.abs(expected).max()
-    assert np.abs(one.constrained_inertia - expected.T).max() < 1e-13 * np.abs(expected).max()
 
 
 _J = np.array([[1.0, 0.0, 0.5], [0.0, 2.0, 0.0], [0.5, 0.0, 3.0]])  # symmetric, but J* has the entries -0.5
