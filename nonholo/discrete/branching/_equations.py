@@ -86,7 +86,7 @@ class Equations:
 
     def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
         """Stack points, none as well."""
-        return np.array(rows).reshape(-1, 1 + len(self.stiffness) + (self.lever is not None))
+        return np.array(rows).reshape(-1, len(self.slides))
 
     def starts(self) -> Inexact[np.ndarray, "B m"] | None:
         """Return approximate roots; None where the secular polynomial has them."""
@@ -294,7 +294,8 @@ def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple
     """
     if start.regularity(x) < _SINGULAR:
         return Outcome.branch_unverified, x
-    direction = _motion(start, end)
+    push = [] if start.lever is None else [end.push - start.push]
+    direction = np.array([*(end.target - start.target), *push, 0.0])  # of the right-hand sides
     slope, shortest = start.slope(x), _SHORTEST / max(1.0, float(np.linalg.norm(direction)))
     side, s, size = np.sign(np.linalg.det(slope)), 0.0, 1.0
     while s < 1.0:
@@ -317,12 +318,6 @@ def nearest_body(equations: Equations) -> kernels.NearestBody:
     slides, inertia = equations.lever is not None, equations.stiffness + equations.arm**2
     how = (_LONGEST, _CLOSE, _SMALL, _CORRECTIONS, _CONVERGED, _SHORTEST, _CLEAR * _SINGULAR)
     return kernels.NearestBody(inertia, equations.coupling, equations.arm, slides, *how)
-
-
-def _motion(start: Equations, end: Equations) -> Float[np.ndarray, "m"]:
-    """Return how the right-hand sides move, in the order of the residual."""
-    push = [] if start.lever is None else [end.push - start.push]
-    return np.array([*(end.target - start.target), *push, 0.0])
 
 
 def _between(start: Equations, end: Equations, s: float) -> Equations:

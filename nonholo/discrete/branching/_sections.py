@@ -9,7 +9,6 @@ Reference: docs/theory/branches.md, "Any rows".
 
 import dataclasses
 import functools
-from collections.abc import Sequence
 from typing import Any, ClassVar, TypeAlias, cast
 
 import numpy as np
@@ -66,10 +65,6 @@ class Section(Equations):
     def horizon(self) -> Float[np.ndarray, "m"]:
         """Sizes of coordinates that count as infinite."""
         return np.full(1 + self.slices.shape[1], FAR * max(1.0, np.abs(self.target).max()))
-
-    def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
-        """Stack points, none as well."""
-        return np.array(rows).reshape(-1, 1 + self.slices.shape[1])
 
     def starts(self) -> Inexact[np.ndarray, "B m"]:
         """Return no approximate roots: they are followed."""

@@ -19,7 +19,7 @@ from nonholo.discrete import branching
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
-from nonholo.discrete.definition._precision import compile_double, in_double
+from nonholo.discrete.definition._step import compile_double, in_double
 from nonholo.discrete.routes import AbstractBodyStepper, Compact, ScalarRoute, ScalarStep
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 from nonholo.systems import refuse_fixed_in_space

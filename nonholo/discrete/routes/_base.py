@@ -404,14 +404,9 @@ def reversal_defects(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
 
     Infinite where the step back cannot be computed, NaN where there is no step forward.
     """
-    return _of_single_steps(route, states) if route.order == 2 else _of_compositions(route, states)
-
-
-def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return them for steps back to the inverse displacement.
-
-    The map is multivalued and its principal value is not always the way back: the nearest value counts.
-    """
+    if route.order > 2:
+        return _of_compositions(route, states)
+    # back to the inverse displacement by the nearest value of the map: its principal value is not always the way back
     r, cayley = route.encode(states.reduced_momentum), route.to_kernel(states.canonical_chart)
     poses = matrices_of(states)
     momenta, charts, ahead = route.step_each((r, cayley, poses), cayley, principal_only=True)

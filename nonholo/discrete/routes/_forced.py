@@ -276,8 +276,22 @@ def _check_compiled(forced: Forced) -> None:
 
 
 def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.Kick, Float[np.ndarray, "dim k"]]:
-    """Return what is linear, with the weight in the user's frame, and the momenta of body covectors."""
-    keep, along = _half_step(free, forced)
+    """Return what is linear, with the weight in the user's frame, and the momenta of body covectors.
+
+    Of friction it is what half a step leaves of the kernel's momenta.
+    """
+    S, half, keep = np.asarray(forced.constraint_subspace), float(free.time_step) / 2, np.zeros((0, 0))
+    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
+    if forced.friction is not None and free.is_scalar:
+        rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
+        C = rows @ forced.friction.matrix @ rows.T
+        keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
+        along = rows.T @ (scale * push).T
+    else:
+        left, push, _ = forced.propagator(S.T, half)
+        along = S.T @ push.T @ to_kernel
+        if forced.friction is not None:
+            keep = np.linalg.solve(to_kernel, left.T @ to_kernel).T
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
@@ -289,20 +303,6 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
 def sum_products(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the sum of outer products in their order, as by the kernel of a page."""
     return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
-
-
-def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray, Float[np.ndarray, "dim k"]]:
-    """Return what friction leaves of the kernel's momenta in half a step, and the momenta of body covectors."""
-    S, half = np.asarray(forced.constraint_subspace), float(free.time_step) / 2
-    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
-    if forced.friction is not None and free.is_scalar:
-        rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
-        C = rows @ forced.friction.matrix @ rows.T
-        keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
-        return keep, rows.T @ (scale * push).T
-    keep, push, _ = forced.propagator(S.T, half)
-    remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
-    return remainder, S.T @ push.T @ to_kernel
 
 
 def velocities_of(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "dim k"]:
