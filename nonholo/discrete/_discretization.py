@@ -226,22 +226,15 @@ class Discretization(Scheme, AbstractMotion):
         X = group.vee((W - group.inverse(W)) / 2)
         gain = np.diff(forced.potential_energy(states.configuration))
         gain += (self.mean_force(before, forced) * X).sum(axis=1)
-        if forced.slips:
-            gain = gain + self._work_of_slips(before, X, states.restricted_momentum)
+        if forced.slips:  # by the impulses of slips, less what is lost where they end
+            body, h = cast(Widened, cast(Forced, self.forces).free), float(self.time_step)
+            slip, momenta = applied(body.rows, X), states.restricted_momentum[:, -len(body.rows) :]
+            start = applied(body.slip_inertia, 2 / h * slip) - momenta[1:]  # the mean with what follows is M x / h
+            left, right = (self.displacement_decoder.momentum(before.canonical_chart, x) for x in ("left", "right"))
+            impulse = applied(body.duals, left - right - h * self.mean_force(before)) + momenta[1:] - start
+            velocities = np.linalg.solve(body.slip_inertia, (momenta[:-1] + start).T).T
+            gain = gain + ((impulse * slip).sum(axis=1) / h - ((momenta[:-1] - start) * velocities).sum(axis=1) / 2)
         return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])
-
-    def _work_of_slips(self, before: Orbit, X: np.ndarray, momenta: np.ndarray) -> Float[np.ndarray, "L"]:
-        """Return the work of the impulses of slips over steps, less what is lost where slips end.
-
-        A step begins at momenta whose mean with those after it is M x / h.
-        """
-        body, h = cast(Widened, cast(Forced, self.forces).free), float(self.time_step)
-        slip, momenta = applied(body.rows, X), momenta[:, -len(body.rows) :]
-        start = applied(body.slip_inertia, 2 / h * slip) - momenta[1:]
-        left, right = (self.displacement_decoder.momentum(before.canonical_chart, side) for side in ("left", "right"))
-        impulse = applied(body.duals, left - right - h * self.mean_force(before)) + momenta[1:] - start
-        velocities = np.linalg.solve(body.slip_inertia, (momenta[:-1] + start).T).T
-        return (impulse * slip).sum(axis=1) / h - ((momenta[:-1] - start) * velocities).sum(axis=1) / 2
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.

@@ -481,8 +481,7 @@ class Orbit(AbstractOrbit):
     def lacks_forces(self) -> bool:
         """Whether forces of steps between the states are needed: those of a table, or of slips."""
         forced = self.system.forces
-        own = forced is not None and (forced.table is not None or bool(forced.slips))
-        return own and not self.has_every_step
+        return forced is not None and (forced.table is not None or bool(forced.slips)) and not self.has_every_step
 
     @memo
     def tangent(self) -> Float[np.ndarray, "L k k"]:

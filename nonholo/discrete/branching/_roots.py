@@ -156,9 +156,7 @@ def _finite(equations: Equations, points: Inexact[Array, "B m"]) -> Inexact[Arra
     return points[(np.abs(points) < equations.horizon).all(axis=1)]
 
 
-def _newton(
-    equations: Equations, x: Inexact[Array, "B m"], steps: int = 40, reach: float = np.inf
-) -> tuple[Inexact[Array, "B m"], Bool[np.ndarray, "B"]]:
+def _newton(equations: Equations, x: Points, steps: int = 40, reach: float = np.inf) -> tuple[Points, Bool[Array, "B"]]:
     """Return the roots that Newton's method reaches, moving no further than `reach` at first, and where it does."""
     x, best, least, active = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
     for i in range(steps):

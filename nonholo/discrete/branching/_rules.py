@@ -349,28 +349,21 @@ class RuleStepper(AbstractBodyStepper):
         return good, int(code)
 
     def _following(self, frame: Frame, now: "_Now", most: int) -> tuple[Outcome, Place, np.ndarray | None]:
-        """Return states that follow as rows, and the goal of the last one if the kernel found them.
+        """Return up to `most` states that follow as rows, and the goal of the last one if the kernel found them.
 
-        The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
+        The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time. Momenta are
+        summed from the one at which the goals began, so that they do not depend on how steps are cut.
         """
         if self.rule.is_nearest:
-            ahead, goals = self._clear_places(frame, now, most)
-            if len(goals):
-                return Outcome.successful, ahead, goals[-1]
+            h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
+            first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
+            goals, points = np.empty((most, len(now.goal))), np.empty((most, len(point)))
+            if steps := kernels.advance_to_nearest(body, now.goal, point, goals, points):
+                change = goals[:steps] - first
+                momenta = now.begin + frame.momentum(change[:, :k], change[:, -1]) / h
+                return Outcome.successful, Place(points[:steps], momenta), goals[steps - 1]
         code, following = next_place(frame, self.rule, now.place)
         return code, Place(*(x[None][: int(code == 0)] for x in following)), None
-
-    def _clear_places(self, frame: Frame, now: "_Now", count: int) -> tuple[Place, Float[np.ndarray, "C g"]]:
-        """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
-
-        Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
-        """
-        h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
-        first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
-        goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
-        steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
-        change = goals[:steps] - first
-        return Place(points[:steps], now.begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
 
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""

@@ -77,9 +77,8 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     height = np.einsum("bij,ij->b", square, land.inertia)
     ascent = np.einsum("bii->b", square) - land.sharpness * square[:, 1, 1]  # kappa rho, one half on the ridge
     energy, (center, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
-    kinds = ["inner", "outer", "between"]
     below = energy < saddle
-    return np.select([below & (ascent < 0.5), below, energy < center], kinds, default="")
+    return np.select([below & (ascent < 0.5), below, energy < center], ["inner", "outer", "between"], default="")
 
 
 def regular_landscape(discrete: Discretization) -> Landscape | None:

@@ -36,10 +36,6 @@ class Family(NamedTuple):
     norm: fmpz_poly
 
 
-_Secular = tuple[fmpz_poly, list[fmpz_mat], fmpz_poly, fmpz_poly, list[fmpz_poly]]
-r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
-
-
 def families(problem: Problem) -> Iterator[Family]:
     """Yield polynomials that have every isolated displacement over the momentum as a root, each once."""
     if len(problem.excess) == 1:
@@ -113,7 +109,8 @@ def _generic(problem: Problem) -> Iterator[Family]:
         yield _half_turn(problem, missing)
 
 
-def _secular(problem: Problem) -> _Secular:
+def _secular(problem: Problem) -> tuple[fmpz_poly, list[fmpz_mat], fmpz_poly, fmpz_poly, list[fmpz_poly]]:
+    r"""Return polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
     B, c, d = problem.stiffness, _column(problem.coupling), _column(problem.excess)
     determinant = (-B).charpoly()
     Ac, Ad = (_solve(B, [x * side for x in determinant.coeffs()]) for side in (c, d))

@@ -404,8 +404,15 @@ def reversal_defects(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
 
     Infinite where the step back cannot be computed, NaN where there is no step forward.
     """
-    if route.order > 2:
-        return _of_compositions(route, states)
+    if route.order > 2:  # back from the opposite momentum
+        r = states.reduced_momentum
+        after, there, ahead = route.whole_steps(r, step_poses(states))
+        good = ahead == Outcome.successful
+        back, _, behind = route.whole_steps(-after[good], there[good])
+        distances = np.full(len(r), np.nan)
+        far = _largest(back + r[good]) / _largest(r[good])
+        distances[good] = np.where(behind == Outcome.successful, far, np.inf)
+        return distances
     # back to the inverse displacement by the nearest value of the map: its principal value is not always the way back
     r, cayley = route.encode(states.reduced_momentum), route.to_kernel(states.canonical_chart)
     poses = matrices_of(states)
@@ -420,18 +427,6 @@ def reversal_defects(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     gaps = _largest(back + momenta) / _largest(momenta)
     distances = np.maximum(_largest(charts_back + cayley) / _largest(cayley), gaps)
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
-
-
-def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return them for steps back from the opposite momentum."""
-    r = states.reduced_momentum
-    after, there, ahead = route.whole_steps(r, step_poses(states))
-    good = ahead == Outcome.successful
-    back, _, behind = route.whole_steps(-after[good], there[good])
-    distances = np.full(len(r), np.nan)
-    far = _largest(back + r[good]) / _largest(r[good])
-    distances[good] = np.where(behind == Outcome.successful, far, np.inf)
-    return distances
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:

@@ -24,6 +24,8 @@ from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
+When = tuple[float, int, float]
+"""The time, the number of the step and the fraction of it."""
 _OF_SINGLE = "name needs_pose system time_step scale encode decode to_kernel from_kernel encode_poses decode_poses"
 """Properties that are those of the route inside."""
 
@@ -134,9 +136,15 @@ class ForcedRoute(AbstractForcedRoute):
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
-        has_function = forced.needs_function or exact_terms(forced)
-        half = half_drive(free, forced, self.faults) if has_function else half_kick(free, forced)
-        return kernels.ForcedBody(free.body, half)
+        kick, along = _linear_part(free, forced)
+        if forced.needs_function or exact_terms(forced):
+            return kernels.ForcedBody(free.body, half_drive(free, forced, kick, along, self.faults))
+        weight, arms = kick.weight, kick.arms
+        if len(weight):
+            arms = arms @ kernel_frame(free, forced).T
+        if free.is_scalar and forced.group == SE(2):
+            weight, arms = weight[:2], arms[:, :2]
+        return kernels.ForcedBody(free.body, kick._replace(weight=plain(weight), arms=plain(arms)))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -184,20 +192,8 @@ class FunctionRoute(AbstractForcedRoute):
         return self.kick(m[None], pose[None], (2 * half * node, step), half, self.faults)[0]
 
 
-def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
-    """Return half the impulse of a step in the units and axes of a kernel."""
-    kick, _ = _linear_part(free, forced)
-    weight, arms = kick.weight, kick.arms
-    if len(weight):
-        arms = arms @ kernel_frame(free, forced).T
-    if free.is_scalar and forced.group == SE(2):
-        weight, arms = weight[:2], arms[:, :2]
-    return kick._replace(weight=plain(weight), arms=plain(arms))
-
-
-def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
+def half_drive(free: Any, forced: Forced, kick: kernels.Kick, along: np.ndarray, faults: Any) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are evaluated before a run."""
-    kick, along = _linear_part(free, forced)
     exact = exact_terms(forced)
     has = forced.function is not None or bool(exact), forced.own_potential is not None
     moves, weights = forced.differences
@@ -365,18 +361,16 @@ class BalancedRoute(AbstractForcedRoute):
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         k = len(m)
-        code, state = self.after(np.array(m), np.array(pose), time, step, fraction)
+        code, state = self.after(np.array(m), np.array(pose), (time, step, fraction))
         if code != 0:
             return None
         after, place = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
-        _, ahead = self.after(after, place, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
+        _, ahead = self.after(after, place, (time + fraction * float(self.free.time_step), step + int(fraction), 1.0))
         return after, self.runs.chart_of(self.body, ahead), place
 
-    def after(
-        self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float, force: Any = None
-    ) -> tuple[int, np.ndarray]:
+    def after(self, m: np.ndarray, pose: np.ndarray, when: When, force: Any = None) -> tuple[int, np.ndarray]:
         """Return the outcome of a fraction of a step, and the kernel's state after it; a constant force may act too."""
-        half = cast(kernels.Balanced, self.body.kick)
+        half, (time, step, fraction) = cast(kernels.Balanced, self.body.kick), when
         rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
         if force is not None:
             rows = rows + half.c.along @ force
