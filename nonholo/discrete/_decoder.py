@@ -102,5 +102,4 @@ def momentum_slope(
     sum_, X = (W + system.group.identity)[..., None, :, :], W - system.group.identity
     dW = sum_ @ (rows if directions is None else directions) @ sum_ / 2
     arm = dW @ tensor @ star(X)[..., None, :, :]
-    twist = (W @ tensor)[..., None, :, :] @ star(dW)
-    return np.einsum("iab,...jba->...ij", rows, arm + twist)
+    return np.einsum("iab,...jba->...ij", rows, arm + (W @ tensor)[..., None, :, :] @ star(dW))

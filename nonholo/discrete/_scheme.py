@@ -62,8 +62,7 @@ def _unflatten(kind: Any, constants: Any, children: Any) -> Any:
     thing = object.__new__(kind)
     for name, value in zip((*kind.leaves, *kind.structure), (*children, *constants), strict=True):
         is_fixed = isinstance(value, _FixedArray)
-        own = np.frombuffer(value.entries).reshape(value.shape) if is_fixed else value
-        object.__setattr__(thing, name, own)
+        object.__setattr__(thing, name, np.frombuffer(value.entries).reshape(value.shape) if is_fixed else value)
     return thing
 
 

@@ -59,8 +59,7 @@ class Equations:
     @property
     def count(self) -> int:
         """Number of complex roots in general."""
-        k = len(self.stiffness)
-        return 2 if self.is_balanced else 2 * k + (self.arm != 0)
+        return 2 if self.is_balanced else 2 * len(self.stiffness) + (self.arm != 0)
 
     @property
     def most(self) -> int:

@@ -139,8 +139,7 @@ def _eliminate(equations: Pulled, y: Inexact[Array, "... k"]) -> tuple[Array, Ar
     k, has_length, w = len(equations.stiffness), equations.lever is not None, 1 + (y * y).sum(axis=-1, keepdims=True)
 
     def rows_at(q: Array) -> Array:
-        x = np.concatenate([np.ones_like(w), y, q], axis=-1) / np.sqrt(w)
-        rows, _ = equations.residual(x)
+        rows, _ = equations.residual(np.concatenate([np.ones_like(w), y, q], axis=-1) / np.sqrt(w))
         return (rows * w * (np.sqrt(w) if equations.is_pulled else 1.0))[..., : k + has_length]
 
     if not has_length:
@@ -263,8 +262,7 @@ def node_of(owner: str, discrete: Discretization, configuration: object, step: i
         remedy = "Pass the system inside, and the momentum after the kick."
         raise error(where, demand, "forces that kick at the nodes", remedy)
     frame = frame_of(where, dataclasses.replace(discrete, system=forced.system))
-    others = [each for each in forced.terms if not hasattr(each, "matrix_for")]
-    if others or forced.function is not None:
+    if forced.function is not None or not all(hasattr(each, "matrix_for") for each in forced.terms):
         got = f"{forced.names} on a body of rank {forced.rank}"
         remedy = "Under other forces only the principal value is known: use `simulate`."
         raise error(where, "have forces that are rational in the coordinates of a turn", got, remedy)

@@ -353,6 +353,5 @@ def _images(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
     r = system.restrict(legendre(frame.discrete, X, "right"))
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real
-    equations = frame.equations(frame.discrete.time_step * system.to_canonical(r))
-    _, zeros, increments = roots_over(frame, equations)
+    _, zeros, increments = roots_over(frame, frame.equations(frame.discrete.time_step * system.to_canonical(r)))
     return increments, np.array([root.is_real for root in zeros], dtype=bool)

@@ -84,8 +84,7 @@ def _half_of_p(equations: Equations) -> Array:
 def _odd(equations: Equations) -> list[Array]:
     """Return the two roots z_0 z = B^-1 r; one if r = 0, where the other is a whole sphere of half-turns."""
     w = equations.target / equations.stiffness
-    spread = np.sqrt(1 - 4 * (w @ w) + 0j)
-    larger = (1 + spread) / 2
+    larger = (1 + np.sqrt(1 - 4 * (w @ w) + 0j)) / 2
     squares = [larger, (w @ w) / larger] if w @ w else [larger]
     return [np.array([z0, *(w / z0)]) for z0 in np.sqrt(np.array(squares))]
 

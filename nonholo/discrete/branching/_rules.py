@@ -184,8 +184,7 @@ class Chosen(AbstractBranchRule):
 
     def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Ask the function, and refuse an answer that is no real value."""
-        present = displacement_at(kick.frame, kick.point)
-        index = call("branch(branches, present)", self.function, values, present)
+        index = call("branch(branches, present)", self.function, values, displacement_at(kick.frame, kick.point))
         if index is None:
             return []
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:

@@ -259,8 +259,7 @@ def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Br
         zeros.append(Root(x if x[0].real >= 0 else -x, int(m), bool(real)))
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
     roots = frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order]
-    values = branches_of(frame, canonical, roots)
-    return dataclasses.replace(values, certified=True, radius=radius[order])
+    return dataclasses.replace(branches_of(frame, canonical, roots), certified=True, radius=radius[order])
 
 
 _FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"
@@ -483,5 +482,4 @@ def _inverse(where: str, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N
     if len(near) > 1 and values.principal not in near:
         got = f"a momentum that {len(near)} of them have"
         raise error(where, "determine the displacement", got, "Use `displacements_over` and choose.")
-    best = near[0] if len(near) == 1 else values.principal
-    return values.displacement[best].real - system.group.identity
+    return values.displacement[near[0] if len(near) == 1 else values.principal].real - system.group.identity

@@ -59,8 +59,7 @@ def _planar(problem: Problem) -> Iterator[Family]:
 
 def _quadratic(problem: Problem) -> Iterator[Family]:
     r"""The quadratic of $z_0^2$: $z_0z = w = B^{-1}r$, $z_0^4 - z_0^2 + w\cdot w = 0$; if w = 0 only the identity."""
-    solution = fmpq_mat(problem.stiffness).solve(fmpq_mat(_column(problem.excess)))
-    numerators, unit = solution.numer_denom()
+    numerators, unit = fmpq_mat(problem.stiffness).solve(fmpq_mat(_column(problem.excess))).numer_denom()
     w = numerators.entries()
     if not any(w):
         yield Family(_X, [_ONE, *(fmpz_poly() for _ in w)], _ONE)

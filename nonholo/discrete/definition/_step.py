@@ -226,8 +226,7 @@ def _continue(residual: Residual, known_root: Root, target: Array, guess: Array 
 
 
 def _is_unfinished(path: _Path) -> Array:
-    least = jnp.finfo(path.s.dtype).tiny * 1e3
-    return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
+    return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, 1e3 * jnp.finfo(path.s.dtype).tiny))
 
 
 def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
@@ -315,8 +314,7 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
 
 def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
-    W = displacement_of(discrete, y)
-    after = discrete.system.moved(g, W)
+    after = discrete.system.moved(g, displacement_of(discrete, y))
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 

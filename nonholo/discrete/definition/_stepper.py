@@ -136,8 +136,7 @@ class DefinitionStepper(AbstractBodyStepper):
     def _normal(self, ahead: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return momentum and pose one sweep ahead, the pose freed of rounding errors."""
         group = self.motion.system.group
-        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1])))
-        return ahead[0], g.ravel()
+        return ahead[0], group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1]))).ravel()
 
 
 def _coordinates(discrete: Scheme, W: np.ndarray) -> np.ndarray:

@@ -187,8 +187,7 @@ class SlipRoute(AbstractForcedRoute):
         """Take a fraction of a step that slides under an impulse along the rows."""
         route, (r, pose), part = self.free, now, when[2] * float(self.holding.time_step)
         own_pose, k = route.encode_poses(pose), len(r)
-        force = self.body.rows.T @ impulse / part
-        code, state = route.after(route.encode(r), own_pose, when, force)
+        code, state = route.after(route.encode(r), own_pose, when, self.body.rows.T @ impulse / part)
         chart = route.from_kernel(route.runs.chart_of(route.body, state))
         if code != 0:
             return Beginning(code, chart)
