@@ -78,20 +78,15 @@ def step_jacobians(discrete: Scheme, W: Float[np.ndarray, "... N N"]) -> Float[n
     Where the constraint is no chart, $(W - W^{-1})/2 \in \mathfrak{d}$ ties the directions of Cayley coordinates.
     """
     group, system = discrete.system.group, discrete.system
-    if discrete.variety.exact:
-        after, before = (momentum_slope(discrete, V) for V in (group.inverse(W), W))
+    directions = None if discrete.variety.exact else group.basis
+    after, before = (momentum_slope(discrete, V, directions) for V in (group.inverse(W), W))
+    if directions is None:
         return after @ np.linalg.inv(before)
-    (after, _), slopes = (_all_slopes(discrete, V) for V in (group.inverse(W), W))
-    return after @ np.linalg.inv(np.concatenate(slopes, axis=-2))[..., : system.rank]
-
-
-def _all_slopes(discrete: Scheme, W: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the derivatives of hF and of the forbidden part of (W - W^-1)/2 in all directions."""
-    group = discrete.system.group
     sum_, inverse = (W + group.identity)[..., None, :, :], group.inverse(W)[..., None, :, :]
-    dW = sum_ @ group.basis @ sum_ / 2
-    forbidden = group.vee((dW + inverse @ dW @ inverse) / 2) @ discrete.system.annihilator.T
-    return momentum_slope(discrete, W, group.basis), np.swapaxes(forbidden, -1, -2)
+    dW = sum_ @ directions @ sum_ / 2
+    forbidden = group.vee((dW + inverse @ dW @ inverse) / 2) @ system.annihilator.T  # of (W - W^-1)/2
+    slopes = np.concatenate([before, np.swapaxes(forbidden, -1, -2)], axis=-2)
+    return after @ np.linalg.inv(slopes)[..., : system.rank]
 
 
 def momentum_slope(
@@ -107,5 +102,4 @@ def momentum_slope(
     sum_, X = (W + system.group.identity)[..., None, :, :], W - system.group.identity
     dW = sum_ @ (rows if directions is None else directions) @ sum_ / 2
     arm = dW @ tensor @ star(X)[..., None, :, :]
-    twist = (W @ tensor)[..., None, :, :] @ star(dW)
-    return np.einsum("iab,...jba->...ij", rows, arm + twist)
+    return np.einsum("iab,...jba->...ij", rows, arm + (W @ tensor)[..., None, :, :] @ star(dW))

@@ -197,7 +197,7 @@ class Discretization(Scheme, AbstractMotion):
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
         first = self.first_part
-        momentum = first._momentum(states, states.canonical_chart, "left")
+        momentum = first._momentum(self.system.constraint_poses(states), states.canonical_chart, "left")
         if self.forces is None:
             return momentum
         momentum = momentum - first._impulses(states, 0)
@@ -226,22 +226,15 @@ class Discretization(Scheme, AbstractMotion):
         X = group.vee((W - group.inverse(W)) / 2)
         gain = np.diff(forced.potential_energy(states.configuration))
         gain += (self.mean_force(before, forced) * X).sum(axis=1)
-        if forced.slips:
-            gain = gain + self._work_of_slips(states, X)
+        if forced.slips:  # by the impulses of slips, less what is lost where they end
+            body, h = cast(Widened, cast(Forced, self.forces).free), float(self.time_step)
+            slip, momenta = applied(body.rows, X), states.restricted_momentum[:, -len(body.rows) :]
+            start = applied(body.slip_inertia, 2 / h * slip) - momenta[1:]  # the mean with what follows is M x / h
+            left, right = (self.displacement_decoder.momentum(before.canonical_chart, x) for x in ("left", "right"))
+            impulse = applied(body.duals, left - right - h * self.mean_force(before)) + momenta[1:] - start
+            velocities = np.linalg.solve(body.slip_inertia, (momenta[:-1] + start).T).T
+            gain = gain + ((impulse * slip).sum(axis=1) / h - ((momenta[:-1] - start) * velocities).sum(axis=1) / 2)
         return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])
-
-    def _work_of_slips(self, states: Orbit, X: Float[np.ndarray, "L dim"]) -> Float[np.ndarray, "L"]:
-        """Return the work of the impulses of slips over steps, less what is lost where slips end.
-
-        A step begins at momenta whose mean with those after it is M x / h.
-        """
-        body, h, before = cast(Widened, cast(Forced, self.forces).free), float(self.time_step), states.chosen(slice(-1))
-        slip, momenta = applied(body.rows, X), states.restricted_momentum[:, -len(body.rows) :]
-        start = applied(body.slip_inertia, 2 / h * slip) - momenta[1:]
-        left, right = (self._momentum(before, before.canonical_chart, side) for side in ("left", "right"))
-        impulse = applied(body.duals, left - right - h * self.mean_force(before)) + momenta[1:] - start
-        velocities = np.linalg.solve(body.slip_inertia, (momenta[:-1] + start).T).T
-        return (impulse * slip).sum(axis=1) / h - ((momenta[:-1] - start) * velocities).sum(axis=1) / 2
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
@@ -251,31 +244,28 @@ class Discretization(Scheme, AbstractMotion):
         """
         remedy = "Impulses of substeps at different poses do not add up to one of the step: run with order=2."
         refuse_composition("Orbit.multipliers", self, remedy)
-        before, after = states.chosen(slice(None, -1)), states.chosen(slice(1, None))
-        if not states.has_every_step:
-            after = self._next_states(before, after)
-        if self.forces is None and not self.system.is_spatial:
+        system, before = self.system, states.chosen(slice(None, -1))
+        after = states.chosen(slice(1, None)) if states.has_every_step else self._next_states(before, states)
+        if self.forces is None and not system.is_spatial:
             return self.displacement_decoder.multipliers(before.canonical_chart, after.canonical_chart)
-        arriving = self._momentum(before, before.canonical_chart, "right")
+        arriving = self._momentum(system.constraint_poses(before), before.canonical_chart, "right")
         if self.is_balanced:
             arriving = arriving + self._impulses(before, 0) + self._impulses(after, 0)
         elif self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
-        group, to_multipliers = self.system.group, np.linalg.pinv(self.system.inside.annihilator).T
-        if not self.system.is_spatial:
-            return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
-        g = self.displaced(before.canonical_chart) @ before.configuration
-        jump = self._momentum_at(g, after.canonical_chart, "left") - arriving
-        return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
+        g = self.displaced(before.canonical_chart) @ before.configuration if system.is_spatial else None
+        jump = self._momentum(g, after.canonical_chart, "left") - arriving
+        jump = jump if g is None else system.group.coadjoint(system.group.inverse(g), jump)
+        return applied(np.linalg.pinv(system.inside.annihilator).T, jump)
 
-    def _next_states(self, before: Orbit, after: Orbit) -> Orbit:
+    def _next_states(self, before: Orbit, states: Orbit) -> Orbit:
         """Return the states one step after others, whose displacements count, instead of those that were saved."""
         if before.branch != "principal":
             got = f"branch {before.branch!r} and {len(before) + 1} states with others between, which are not known"
             raise error("Orbit.multipliers", "have all states, or the principal branch", got, "Run with save_every=1.")
         if self.forces is not None:
             return self.after_parts(before, np.ones(len(before)))
-        return dataclasses.replace(after, cayley=self.route.next_charts(before))
+        return dataclasses.replace(states.chosen(slice(1, None)), cayley=self.route.next_charts(before))
 
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
@@ -286,13 +276,10 @@ class Discretization(Scheme, AbstractMotion):
         impulses = forced.impulses(momenta, states.configuration, states.time, steps, half)
         return impulses if shift == 0 else -impulses
 
-    def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
-        if self.system.is_spatial:
-            return self._momentum_at(states.configuration, cayley, side)
-        return self.displacement_decoder.momentum(cayley, side)
-
-    def _momentum_at(self, g: np.ndarray, cayley: np.ndarray, side: str) -> np.ndarray:
-        """Return the momenta of displacements from poses."""
+    def _momentum(self, g: np.ndarray | None, cayley: np.ndarray, side: str) -> np.ndarray:
+        """Return the momenta of displacements; from poses where the constraint depends on them."""
+        if g is None:
+            return self.displacement_decoder.momentum(cayley, side)
         return legendre(self, self.system.in_body(self.variety.increment(cayley), g), side)
 
 

@@ -86,9 +86,16 @@ def discretize(
         return system.discrete_map(time_step)
     as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
-    lagrangian = _difference(system, difference)
-    variety = _constraint(system, constraint)
-    discrete = Discretization(system, step, lagrangian, variety, _order(order, lagrangian, variety))
+    lagrangian, variety = _difference(system, difference), _constraint(system, constraint)
+    where = "discretize(order=...)"
+    order = choice(where, order, (2, *WEIGHTS))
+    if order > 2 and callable(lagrangian):
+        got = "a callable L_d(W), which has one time step built in"
+        raise error(where, "be 2", f"{order} with {got}", "Pass difference='matrix' or 'logarithmic'.")
+    if order > 2 and variety not in ("skew", "exponential"):
+        got = f"{order} with a constraint that may not hold for W^-1 where it holds for W"
+        raise error(where, "be 2", got, "Pass constraint='skew' or 'exponential'.")
+    discrete = Discretization(system, step, lagrangian, variety, order)
     if discrete.forces is not None:
         _ = discrete.route  # refused here where there is none
     return discrete
@@ -120,19 +127,6 @@ def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
         remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
         raise error(where, "be defined on the group", got, remedy)
     return kind
-
-
-def _order(order: Any, difference: object, constraint: object) -> int:
-    """Refuse an order that is not offered, or not for this difference and constraint."""
-    where = "discretize(order=...)"
-    order = choice(where, order, (2, *WEIGHTS))
-    if order > 2 and callable(difference):
-        got = "a callable L_d(W), which has one time step built in"
-        raise error(where, "be 2", f"{order} with {got}", "Pass difference='matrix' or 'logarithmic'.")
-    if order > 2 and constraint not in ("skew", "exponential"):
-        got = f"{order} with a constraint that may not hold for W^-1 where it holds for W"
-        raise error(where, "be 2", got, "Pass constraint='skew' or 'exponential'.")
-    return order
 
 
 _SAMPLES = 16
@@ -180,8 +174,7 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
     if velocities.shape != (_SAMPLES, group.dim) or not np.all(np.isfinite(velocities)):
         got = f"shape {velocities.shape[1:]}" if velocities.shape[1:] != (group.dim,) else "a value that is not finite"
         raise error(where, f"return {group.dim} finite coordinates", got, "Use `vee` on a matrix of the algebra.")
-    unit = velocities / np.linalg.norm(velocities, axis=1, keepdims=True)
-    rows = annihilator / np.linalg.norm(annihilator, axis=1, keepdims=True)
+    unit, rows = (x / np.linalg.norm(x, axis=1, keepdims=True) for x in (velocities, annihilator))
     return float(np.abs(unit @ rows.T).max(initial=0.0))
 
 
@@ -256,6 +249,6 @@ def moser_veselov_displacement(mass_tensor: Any, momentum: Any, time_step: Array
     try:
         S = scipy.linalg.solve_continuous_are(-M / 2, np.eye(n), M @ M / 4 + J @ J, np.eye(n))
     except (np.linalg.LinAlgError, ValueError) as failure:  # what is not finite is a ValueError
-        where = f"{owner}(momentum=...)"
-        raise error(where, "lie on the branch of small steps", f"{failure}", "Take smaller steps.") from None
+        demand = "lie on the branch of small steps"
+        raise error(f"{owner}(momentum=...)", demand, f"{failure}", "Take smaller steps.") from None
     return np.linalg.solve(J, (M / 2 + S).T).T

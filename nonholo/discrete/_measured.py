@@ -82,40 +82,32 @@ def orbit_of_poses(system: Any, time: Any, configuration: Any) -> Orbit:
     gaps = np.diff(times)
     step = float(gaps.mean()) if np.ptp(gaps) <= _SAME_STEP * gaps.mean() else None
     chart = _chart(system, group.matrix_from_pose(pose), np.append(gaps, -gaps[-1]))
-    reduced = system.to_canonical(_along(MeasuredMotion(system), chart, configurations(system, pose)))
-    return Orbit(MeasuredMotion(system, step), times, reduced, chart, pose)
-
-
-def _along(motion: MeasuredMotion, chart: np.ndarray, g: np.ndarray) -> Float[np.ndarray, "K k"]:
-    """Return momenta along the constraint: means, linear in time, of those that set out and those that arrive.
-
-    They differ by what forces other than the constraint's do in between.
-    """
-    out = motion.system.restrict_at(motion.momenta(chart, g), g)
-    arriving = motion.system.restrict_at(motion.momenta(-chart[:-1], g[1:]), g[1:])[:-1]
+    motion = MeasuredMotion(system, step)
+    g = configurations(system, pose)
+    # means, linear in time, of momenta that set out and those that arrive: other forces than the constraint's part them
+    out = system.restrict_at(motion.momenta(chart, g), g)
+    arriving = system.restrict_at(motion.momenta(-chart[:-1], g[1:]), g[1:])[:-1]
     before, after = chart[:-2, -1:], chart[1:-1, -1:]
     out[1:-1] = (before * out[1:-1] + after * arriving) / (before + after)
-    return out
+    return Orbit(motion, times, system.to_canonical(out), chart, pose)
 
 
 def _chart(system: System, g: Float[np.ndarray, "K N N"], h: Float[np.ndarray, "K"]) -> np.ndarray:
-    """Return log W_k, spatial log U_k, in the canonical frame, and h_k; from the last pose back."""
+    """Return log W_k, spatial log U_k, in the canonical frame, and h_k; from the last pose back.
+
+    Warn of the first turn that is wider than 90 degrees, by the eigenvalues of its matrix.
+    """
     group = system.group
     ahead = np.concatenate([g[1:], g[-2:-1]])
     D = ahead @ group.inverse(g) if system.is_spatial else group.inverse(g) @ ahead
-    _warn_of_aliasing(D[:-1])
-    return np.concatenate([group.log(D), h[:, None]], axis=1)
-
-
-def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
-    """Warn of the first turn that is wider than 90 degrees, by the eigenvalues of its matrix."""
-    turns = np.degrees(np.abs(np.angle(np.linalg.eigvals(D))).max(axis=1))
+    turns = np.degrees(np.abs(np.angle(np.linalg.eigvals(D[:-1]))).max(axis=1))
     if (wide := turns > _WIDE).any():
         row = int(wide.argmax())
-        where = "`Orbit.from_poses(configuration=...)`"
-        message = f"{where} turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
+        turn = f"turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
         reason = "Velocities are those of the shorter turn, which may not be the one taken."
-        warnings.warn(f"{message} {reason} Pass poses in shorter steps.", AliasingWarning, stacklevel=5)
+        message = f"`Orbit.from_poses(configuration=...)` {turn} {reason} Pass poses in shorter steps."
+        warnings.warn(message, AliasingWarning, stacklevel=4)
+    return np.concatenate([group.log(D), h[:, None]], axis=1)
 
 
 def _times(time: Any) -> Float[np.ndarray, "K"]:

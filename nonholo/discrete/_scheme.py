@@ -31,8 +31,6 @@ from nonholo.base.types import Array, Float, Inexact, read_only
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import SYSTEMS, AbstractSystem, Forced, Friction, Gravity, Linear, Slip, Spring, System, Widened
 
-_TREES: list[Any] = [*SYSTEMS, Forced, Friction, Gravity, Linear, Slip, Spring, Widened]
-
 
 class _FixedArray(NamedTuple):
     """An array that is compared and hashed by its entries."""
@@ -50,29 +48,21 @@ def register() -> None:
     import jax
 
     keep_programs()
-    for kind in (*_TREES, *Scheme.__subclasses__()):
-        flatten, unflatten = functools.partial(_flatten, kind), functools.partial(_unflatten, kind)
-        jax.tree_util.register_pytree_node(kind, flatten, unflatten)
+    for kind in (*SYSTEMS, Forced, Friction, Gravity, Linear, Slip, Spring, Widened, *Scheme.__subclasses__()):
+        jax.tree_util.register_pytree_node(kind, _flatten, functools.partial(_unflatten, kind))
 
 
-def _flatten(kind: Any, thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    constants = (getattr(thing, name) for name in kind.structure)
-    return tuple(getattr(thing, name) for name in kind.leaves), tuple(_hashable(x) for x in constants)
-
-
-def _hashable(value: Any) -> Any:
-    return _FixedArray(value.tobytes(), value.shape) if isinstance(value, np.ndarray) else value
-
-
-def _from_hashable(value: Any) -> Any:
-    return np.frombuffer(value.entries).reshape(value.shape) if isinstance(value, _FixedArray) else value
+def _flatten(thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    constants = (getattr(thing, name) for name in thing.structure)
+    static = (_FixedArray(x.tobytes(), x.shape) if isinstance(x, np.ndarray) else x for x in constants)
+    return tuple(getattr(thing, name) for name in thing.leaves), tuple(static)
 
 
 def _unflatten(kind: Any, constants: Any, children: Any) -> Any:
     thing = object.__new__(kind)
-    values = *children, *map(_from_hashable, constants)
-    for name, value in zip((*kind.leaves, *kind.structure), values, strict=True):
-        object.__setattr__(thing, name, value)
+    for name, value in zip((*kind.leaves, *kind.structure), (*children, *constants), strict=True):
+        is_fixed = isinstance(value, _FixedArray)
+        object.__setattr__(thing, name, np.frombuffer(value.entries).reshape(value.shape) if is_fixed else value)
     return thing
 
 
@@ -179,9 +169,8 @@ def _cubes_stay(group: AbstractMatrixGroup, subspace: np.ndarray, annihilator: n
 
 def forbidden_matrices(group: AbstractMatrixGroup, annihilator: np.ndarray) -> Float[np.ndarray, "s N N"]:
     """Return matrices whose sums of products of entries with X are the forbidden coordinates of X."""
-    N = group.size
-    units = np.eye(N * N).reshape(N * N, N, N)
-    return (group.vee(units) @ annihilator.T).T.reshape(-1, N, N)
+    units = np.eye(group.size**2).reshape(-1, group.size, group.size)
+    return (group.vee(units) @ annihilator.T).T.reshape(-1, group.size, group.size)
 
 
 def definition(owner: str) -> Any:
@@ -206,13 +195,12 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
         constraint = (constraint,)
     if not isinstance(constraint, list | tuple):
         return choice(where, constraint, _NAMES, "Or pass functions f_j(W), zero on the variety.")
-    functions = tuple(constraint)
     s = len(system.annihilator)
-    if len(functions) != s:
-        raise error(where, f"be {s} functions, one per forbidden direction", f"{len(functions)}", "Pass as many.")
+    if len(constraint) != s:
+        raise error(where, f"be {s} functions, one per forbidden direction", f"{len(constraint)}", "Pass as many.")
     write = "Write each f_j(W) with jax.numpy, for one matrix, returning one number."
     words = "real scalar functions", write, "Avoid 0/0 and square roots of zero there."
-    functions, values, derivative = at_identity(where, functions, system.group, words)
+    functions, values, derivative = at_identity(where, constraint, system.group, words)
     if np.abs(values).max(initial=0.0) > _ROUNDING:
         raise error(where, "vanish at the identity", f"values {values}", "Subtract them.")
     along = np.abs(derivative @ system.constraint_subspace.T).max(initial=0.0)
@@ -293,25 +281,20 @@ class Scheme:
 
 
 def legendre(discrete: Scheme, increment: Inexact[Array, "... N N"], side: str) -> Inexact[Array, "... dim"]:
-    """Return the momenta of displacements given as W - I."""
-    group = discrete.system.group
+    r"""Return the momenta of displacements given as W - I.
+
+    Logarithmic ones are $(\mathrm{dexp}^{-1}_{\pm X})^*\,\mathbb{I}\,X/h$, $X = \log W$: plus on the left, minus on the
+    right.
+    """
+    system, group = discrete.system, discrete.system.group
     if discrete.difference == "matrix":
-        tensor = discrete.system.homogeneous_mass_tensor
-        return matrix_legendre(group, tensor, increment, side) / discrete.time_step
-    if isinstance(discrete.difference, str):
-        return logarithmic_legendre(discrete, increment + group.identity, side)
-    by_derivative = definition("discretize(difference=...)").momenta_by_derivative
-    return by_derivative(discrete.difference, group, increment + group.identity, side)
-
-
-def logarithmic_legendre(discrete: Scheme, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
-    r"""Return $(\mathrm{dexp}^{-1}_{\pm X})^*\,\mathbb{I}\,X/h$, $X = \log W$: plus on the left, minus on the right."""
-    group = discrete.system.group
-    x = group.log(W)
-    xp = x.__array_namespace__()
-    transport = group.dexp_inverse(x if side == "left" else -x)
-    p = applied(xp.asarray(discrete.system.inertia_operator), x) / discrete.time_step
-    return (p[..., None, :] @ transport)[..., 0, :]
+        return matrix_legendre(group, system.homogeneous_mass_tensor, increment, side) / discrete.time_step
+    if callable(discrete.difference):
+        by_derivative = definition("discretize(difference=...)").momenta_by_derivative
+        return by_derivative(discrete.difference, group, increment + group.identity, side)
+    x = group.log(increment + group.identity)
+    p = applied(x.__array_namespace__().asarray(system.inertia_operator), x) / discrete.time_step
+    return (p[..., None, :] @ group.dexp_inverse(x if side == "left" else -x))[..., 0, :]
 
 
 def matrix_legendre(

@@ -48,8 +48,7 @@ def looked_at(ends: Sequence[float], unit: float = 1.0) -> Float[np.ndarray, "lo
 
     Ends of steps are in another unit of time.
     """
-    looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
-    return np.interp(looks, np.arange(len(ends)), ends) / unit
+    return np.interp(np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS, np.arange(len(ends)), ends) / unit
 
 
 class AbstractOrbit(Keeper, abc.ABC):

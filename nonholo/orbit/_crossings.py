@@ -124,8 +124,7 @@ class EventLog(AbstractEventLog[Crossings]):
 
 def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
     """Return the crossings of stretches of a run one after another."""
-    columns = zip(*((part.step, part.fraction, part.direction) for part in parts), strict=True)
-    step, fraction, direction = map(np.concatenate, columns)
-    states, after = ([getattr(part, name) for part in parts] for name in ("states", "after"))
-    later = None if after[0] is None else after[0].joined(after[1:])
-    return Crossings(step, fraction, direction, states[0].joined(states[1:]), later)
+    (first, *others), names = parts, ("step", "fraction", "direction")
+    step, fraction, direction = (np.concatenate([getattr(part, name) for part in parts]) for name in names)
+    after = None if first.after is None else first.after.joined([part.after for part in others])
+    return Crossings(step, fraction, direction, first.states.joined([part.states for part in others]), after)

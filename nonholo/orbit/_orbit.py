@@ -244,8 +244,7 @@ class Orbit(AbstractOrbit):
         """Return one state after the impulse along a covector, that of a gap, which changes the rate of the gap."""
         nu, answer = self._answer_to(normal)
         impulse = self.system.to_canonical(change / (answer @ nu) * nu)
-        momentum = self.after_impulse(self.reduced_momentum, impulse)
-        return dataclasses.replace(self, reduced_momentum=momentum)
+        return dataclasses.replace(self, reduced_momentum=self.after_impulse(self.reduced_momentum, impulse))
 
     def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
         """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
@@ -481,8 +480,7 @@ class Orbit(AbstractOrbit):
     def lacks_forces(self) -> bool:
         """Whether forces of steps between the states are needed: those of a table, or of slips."""
         forced = self.system.forces
-        own = forced is not None and (forced.table is not None or bool(forced.slips))
-        return own and not self.has_every_step
+        return forced is not None and (forced.table is not None or bool(forced.slips)) and not self.has_every_step
 
     @memo
     def tangent(self) -> Float[np.ndarray, "L k k"]:

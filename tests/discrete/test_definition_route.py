@@ -14,8 +14,7 @@ from comparisons import assert_same, derivatives
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
-from nonholo.discrete.definition._precision import in_double
-from nonholo.discrete.definition._step import momenta_by_derivative, principal_displacement
+from nonholo.discrete.definition._step import in_double, momenta_by_derivative, principal_displacement
 from nonholo.discrete.routes import make_route
 
 QUANTITIES = ("momentum", "displacement", "configuration", "multipliers", "chart", "restricted_momentum")

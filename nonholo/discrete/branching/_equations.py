@@ -59,8 +59,7 @@ class Equations:
     @property
     def count(self) -> int:
         """Number of complex roots in general."""
-        k = len(self.stiffness)
-        return 2 if self.is_balanced else 2 * k + (self.arm != 0)
+        return 2 if self.is_balanced else 2 * len(self.stiffness) + (self.arm != 0)
 
     @property
     def most(self) -> int:
@@ -86,7 +85,7 @@ class Equations:
 
     def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
         """Stack points, none as well."""
-        return np.array(rows).reshape(-1, 1 + len(self.stiffness) + (self.lever is not None))
+        return np.array(rows).reshape(-1, len(self.slides))
 
     def starts(self) -> Inexact[np.ndarray, "B m"] | None:
         """Return approximate roots; None where the secular polynomial has them."""
@@ -163,9 +162,7 @@ class Frame:
         inertia: Largest eigenvalue of B_1, the unit of inertia.
         length: The unit of length; None for a top.
         lever: a_1 over `length`; None for a top.
-        offset: The center of mass across axis 1; empty for a top.
-        turn: The axes of the normal form as seen from the canonical frame; None where they are the same.
-        rows: Takes canonical momenta to those along the rows of the normal form; None where they are the same.
+        form: The normal form of the body.
     """
 
     discrete: Discretization
@@ -175,9 +172,7 @@ class Frame:
     inertia: float
     length: float | None
     lever: float | None
-    offset: Float[np.ndarray, "j"]
-    turn: Float[np.ndarray, "N N"] | None = None
-    rows: Float[np.ndarray, "m m"] | None = None
+    form: NormalForm
 
     @property
     def stretch(self) -> Float[np.ndarray, "N N"]:
@@ -189,11 +184,11 @@ class Frame:
 
     def equations(self, momentum: Inexact[np.ndarray, "m"]) -> Equations:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
-        momentum = momentum if self.rows is None else self.rows @ momentum
+        momentum = momentum if self.form.frame_map is None else self.form.frame_map @ momentum
         if self.length is None:
             return Equations(self.stiffness, self.coupling, self.axes.T @ momentum / (2 * self.inertia))
         along = momentum[-1]
-        r = self.axes.T @ (momentum[:-1] - self.offset * along) / (2 * self.inertia)
+        r = self.axes.T @ (momentum[:-1] - self.form.offset * along) / (2 * self.inertia)
         return Equations(self.stiffness, self.coupling, r, self.lever, along * self.length / self.inertia)
 
     def momentum(self, target: Inexact[Array, "... k"], push: Array) -> Inexact[Array, "... m"]:
@@ -201,8 +196,9 @@ class Frame:
         turning = 2 * self.inertia * applied(self.axes, target)
         if self.length is not None:
             along = np.asarray(push)[..., None] * self.inertia / self.length
-            turning = np.concatenate([turning + self.offset * along, along], axis=-1)
-        return turning if self.rows is None else np.linalg.solve(self.rows, turning[..., None])[..., 0]
+            turning = np.concatenate([turning + self.form.offset * along, along], axis=-1)
+        rows = self.form.frame_map
+        return turning if rows is None else np.linalg.solve(rows, turning[..., None])[..., 0]
 
     def chart(self, x: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... k"]:
         """Return the canonical Cayley coordinates of displacements; huge at angle pi."""
@@ -210,9 +206,9 @@ class Frame:
         z0 = np.where(x[..., :1] != 0, x[..., :1], _AT_PI)
         y = applied(self.axes, x[..., 1 : k + 1]) / z0
         if self.length is not None:
-            nu = self.length * x[..., -1:] - 2 * applied(self.offset[None], y * z0)
+            nu = self.length * x[..., -1:] - 2 * applied(self.form.offset[None], y * z0)
             y = np.concatenate([y, nu / (2 * z0)], axis=-1)
-        return y if self.rows is None else applied(self.rows.T, y)
+        return y if self.form.frame_map is None else applied(self.form.frame_map.T, y)
 
     def increment(self, x: Inexact[Array, "... m"]) -> Inexact[Array, "... N N"]:
         """Return the canonical displacements minus the identity, without cancellation."""
@@ -227,13 +223,13 @@ class Frame:
             X = np.zeros((*x.shape[:-1], k + 2, k + 2), dtype=x.dtype)
             X[..., :-1, :-1] = 2 * (q[..., :, None] * q[..., None, :]) * sign
             X[..., 0, 0] = -2 * (z * z).sum(axis=-1)
-            X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.offset[None], z)) * q
-        return X if self.turn is None else self.turn @ X @ np.linalg.inv(self.turn)
+            X[..., :-1, -1] = (self.length * x[..., -1:] - 2 * applied(self.form.offset[None], z)) * q
+        return X if self.form.frame is None else self.form.frame @ X @ np.linalg.inv(self.form.frame)
 
     def point(self, W: Inexact[np.ndarray, "N N"]) -> Inexact[np.ndarray, "m"]:
         """Return the point over a canonical displacement of the variety, real or complex."""
-        if self.turn is not None:
-            W = np.linalg.inv(self.turn) @ W @ self.turn
+        if self.form.frame is not None:
+            W = np.linalg.inv(self.form.frame) @ W @ self.form.frame
         n = len(self.stiffness) + 1
         sign = -np.ones(n)
         sign[-1 if self.length is None else 0] = 1.0
@@ -244,7 +240,7 @@ class Frame:
         if self.length is None:
             return np.append(q[-1], self.axes.T @ q[:-1])
         nu, z = W[:-1, -1] @ q, -q[1:]
-        return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.offset @ z) / self.length]])
+        return np.concatenate([q[:1], self.axes.T @ z, [(nu + 2 * self.form.offset @ z) / self.length]])
 
 
 def has_frame(discrete: Discretization) -> bool:
@@ -269,8 +265,7 @@ def frame_of(where: str, discrete: Discretization) -> Frame:
     if np.linalg.norm(coupling) <= _BALANCED:
         coupling = np.zeros_like(coupling)
     lever = None if length is None else float(form.arm / length)
-    place = form.offset, form.frame, form.frame_map
-    return Frame(discrete, axes, eigenvalues / unit, coupling, unit, length, lever, *place)
+    return Frame(discrete, axes, eigenvalues / unit, coupling, unit, length, lever, form)
 
 
 _LONGEST = 0.1  # a predicted move per continuation step, on the sphere
@@ -294,7 +289,8 @@ def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple
     """
     if start.regularity(x) < _SINGULAR:
         return Outcome.branch_unverified, x
-    direction = _motion(start, end)
+    push = [] if start.lever is None else [end.push - start.push]
+    direction = np.array([*(end.target - start.target), *push, 0.0])  # of the right-hand sides
     slope, shortest = start.slope(x), _SHORTEST / max(1.0, float(np.linalg.norm(direction)))
     side, s, size = np.sign(np.linalg.det(slope)), 0.0, 1.0
     while s < 1.0:
@@ -317,12 +313,6 @@ def nearest_body(equations: Equations) -> kernels.NearestBody:
     slides, inertia = equations.lever is not None, equations.stiffness + equations.arm**2
     how = (_LONGEST, _CLOSE, _SMALL, _CORRECTIONS, _CONVERGED, _SHORTEST, _CLEAR * _SINGULAR)
     return kernels.NearestBody(inertia, equations.coupling, equations.arm, slides, *how)
-
-
-def _motion(start: Equations, end: Equations) -> Float[np.ndarray, "m"]:
-    """Return how the right-hand sides move, in the order of the residual."""
-    push = [] if start.lever is None else [end.push - start.push]
-    return np.array([*(end.target - start.target), *push, 0.0])
 
 
 def _between(start: Equations, end: Equations, s: float) -> Equations:

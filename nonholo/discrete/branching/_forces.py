@@ -102,10 +102,14 @@ class Pulled(Equations):
 
     def starts(self) -> Inexact[Array, "B m"]:
         """Return approximate roots, by elimination; none of more than two coordinates y, whose roots are followed."""
-        k = len(self.stiffness)
+        k, radius = len(self.stiffness), _CIRCLES[0]
         if k > 2:
             return np.zeros((0, 1 + len(self.drag)))
-        y = _univariate(self) if k == 1 else np.concatenate([_bivariate(self, radius) for radius in _CIRCLES])
+        if k == 1:
+            _, values = _eliminate(self, _circle(2 * _DEGREE, radius)[:, None])
+            y = np.roots(_coefficients(values[:, 0], 0, radius)[_DEGREE::-1])[:, None]
+        else:
+            y = np.concatenate([_bivariate(self, radius) for radius in _CIRCLES])
         q, _ = _eliminate(self, y)
         points = np.concatenate([np.ones((len(y), 1)), y, q], axis=1)
         return points / np.sqrt(1 + (y * y).sum(axis=1, keepdims=True))
@@ -117,7 +121,7 @@ def _around(k: int, slides: bool) -> tuple[Pulled, Inexact[np.ndarray, "B m"]]:
     rng, m, none = np.random.default_rng(0), k + slides, np.zeros(k)
     still = Pulled(none, none, none, 0.0 if slides else None, 0.0, np.zeros((m, k)), np.zeros((m, m)))
     generic = disturb(still, rng)
-    points = rng.normal(size=(_STARTS, 1 + k + slides, 2)) @ np.array([1.0, 1j])
+    points = rng.normal(size=(_STARTS, 1 + m, 2)) @ np.array([1.0, 1j])
     points[:, : 1 + k] /= np.sqrt((points[:, : 1 + k] ** 2).sum(axis=1, keepdims=True))
     first = polish(generic, points)
     return generic, by_loops(generic, first, lambda: disturb(still, rng), lambda roots: len(roots) >= generic.count)
@@ -135,8 +139,7 @@ def _eliminate(equations: Pulled, y: Inexact[Array, "... k"]) -> tuple[Array, Ar
     k, has_length, w = len(equations.stiffness), equations.lever is not None, 1 + (y * y).sum(axis=-1, keepdims=True)
 
     def rows_at(q: Array) -> Array:
-        x = np.concatenate([np.ones_like(w), y, q], axis=-1) / np.sqrt(w)
-        rows, _ = equations.residual(x)
+        rows, _ = equations.residual(np.concatenate([np.ones_like(w), y, q], axis=-1) / np.sqrt(w))
         return (rows * w * (np.sqrt(w) if equations.is_pulled else 1.0))[..., : k + has_length]
 
     if not has_length:
@@ -156,12 +159,6 @@ def _coefficients(values: Array, axis: int, radius: float) -> Array:
     n = values.shape[axis]
     powers = (radius * np.exp(1j * _BEGIN)) ** np.arange(n)
     return np.moveaxis(np.moveaxis(np.fft.fft(values, axis=axis), axis, -1) / n / powers, -1, axis)
-
-
-def _univariate(equations: Pulled) -> Inexact[Array, "B 1"]:
-    radius = _CIRCLES[0]
-    _, values = _eliminate(equations, _circle(2 * _DEGREE, radius)[:, None])
-    return np.roots(_coefficients(values[:, 0], 0, radius)[_DEGREE::-1])[:, None]
 
 
 def _bivariate(equations: Pulled, radius: float) -> Inexact[Array, "B 2"]:
@@ -209,23 +206,17 @@ class Node:
 
     def equations(self, canonical: Inexact[np.ndarray, "k"]) -> Equations:
         """Return the equations over a canonical restricted momentum."""
-        h, forced, frame = self.discrete.time_step, self.forced, self.frame
+        h, m, frame = float(self.discrete.time_step), self.forced.rank, self.frame
         still, pull, drag = self._half_impulses
         free = frame.equations(h * (canonical + still))
-        if forced.friction is None and not np.any(pull):
+        if self.forced.friction is None and not np.any(pull):
             return free
-        to_rows, to_chart = self._units
-        along = to_chart[:, : len(frame.stiffness)]
-        return Pulled(**vars(free), pull=to_rows @ pull @ along, drag=to_rows @ drag @ to_chart)
-
-    @functools.cached_property
-    def _units(self) -> tuple[np.ndarray, np.ndarray]:
-        """The equations' rows of canonical momenta times h, and canonical Cayley coordinates times z_0 of (z, u)."""
-        m, frame = self.forced.rank, self.frame
         rows = [frame.equations(row) for row in np.eye(m)]
         targets = [row.target if row.lever is None else np.append(row.target, row.push) for row in rows]
-        points = np.concatenate([np.ones((m, 1)), np.eye(m)], axis=1)
-        return float(self.discrete.time_step) * np.transpose(targets), frame.chart(points).T
+        to_rows = h * np.transpose(targets)  # from canonical momenta
+        to_chart = frame.chart(np.concatenate([np.ones((m, 1)), np.eye(m)], axis=1)).T  # times z_0, from (z, u)
+        along = to_chart[:, : len(frame.stiffness)]
+        return Pulled(**vars(free), pull=to_rows @ pull @ along, drag=to_rows @ drag @ to_chart)
 
     @functools.cached_property
     def _half_impulses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -271,8 +262,7 @@ def node_of(owner: str, discrete: Discretization, configuration: object, step: i
         remedy = "Pass the system inside, and the momentum after the kick."
         raise error(where, demand, "forces that kick at the nodes", remedy)
     frame = frame_of(where, dataclasses.replace(discrete, system=forced.system))
-    others = [each for each in forced.terms if not hasattr(each, "matrix_for")]
-    if others or forced.function is not None:
+    if forced.function is not None or not all(hasattr(each, "matrix_for") for each in forced.terms):
         got = f"{forced.names} on a body of rank {forced.rank}"
         remedy = "Under other forces only the principal value is known: use `simulate`."
         raise error(where, "have forces that are rational in the coordinates of a turn", got, remedy)

@@ -221,19 +221,16 @@ def _words(axis: Axis, mirror: int, longest: int) -> tuple[Words, Float[np.ndarr
         image = -axis.ends(last)[1], -axis.ends(first)[1]
         if inside < image[0] and image[1] < outside and axis.rises(last):
             words = ((0,), *((letter, *[0] * count) for letter in (1, -1)[: 1 + mirror]))
-            return words, _discs(axis, rho, image, count, mirror)
-    raise ArithmeticError
-
-
-def _discs(axis: Axis, rho: tuple, image: tuple, count: int, mirror: int) -> Float[np.ndarray, "d 2"]:
-    """Return the interval and its images, the last one if there is a mirror."""
+            break
+    else:
+        raise ArithmeticError
     inner = axis.onwards(rho)[1]
     for _ in range(count):
         image = axis.onwards(image)
     ends = [(-rho[0], mirror * rho[0]), (-inner, mirror * inner), (-image[1], -image[0]), image][: 3 + mirror]
     discs = np.array([(float(x + y) / 2, float(y - x) / 2) for x, y in ends])
     discs[1:, 1] *= _WIDER
-    return discs
+    return words, discs
 
 
 def _root(of: Callable[[float], float], low: float, high: float) -> float:
@@ -343,7 +340,11 @@ def _next_generation(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, 
     images = [_images(frame, *node) for node in zip(X, is_real, strict=True)]
     matrices, reality = (np.concatenate(column) for column in zip(*images, strict=True))
     parents = np.repeat(np.arange(len(X)), [len(each) for each, _ in images])
-    first = _first_of_equals(matrices * frame.stretch)
+    entries, first = matrices * frame.stretch, []  # those that repeat none before them, in a unit of length
+    for i, candidate in enumerate(entries):
+        distances = np.abs(entries[first] - candidate).max(axis=(1, 2))
+        if not np.any(distances <= _SAME * max(1.0, np.abs(candidate).max())):
+            first.append(i)
     return matrices[first], reality[first], parents[first]
 
 
@@ -352,18 +353,5 @@ def _images(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
     r = system.restrict(legendre(frame.discrete, X, "right"))
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real
-    equations = frame.equations(frame.discrete.time_step * system.to_canonical(r))
-    _, zeros, increments = roots_over(frame, equations)
+    _, zeros, increments = roots_over(frame, frame.equations(frame.discrete.time_step * system.to_canonical(r)))
     return increments, np.array([root.is_real for root in zeros], dtype=bool)
-
-
-def _first_of_equals(X: Array) -> Int[np.ndarray, "G"]:
-    """Return the indices of matrices minus the identity, in a unit of length, that repeat none before them."""
-    distinct = np.empty_like(X)
-    indices: list[int] = []
-    for i, candidate in enumerate(X):
-        distances = np.abs(distinct[: len(indices)] - candidate).max(axis=(1, 2))
-        if not np.any(distances <= _SAME * max(1.0, np.abs(candidate).max())):
-            distinct[len(indices)] = candidate
-            indices.append(i)
-    return np.array(indices, dtype=np.int64)

@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md.
 import dataclasses
 import functools
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,26 +21,20 @@ Points = Inexact[Array, "B m"]
 
 
 def candidates(equations: Equations) -> Inexact[Array, "B m"]:
-    """Return approximate roots, only finite ones."""
+    """Return approximate roots, only finite ones; by the secular polynomial, or the one of a special case."""
     with np.errstate(all="ignore"):
         if (points := equations.starts()) is None:
-            points = equations.points([_with_length(equations, v) for v in _vectors(equations)])
+            is_planar = len(equations.stiffness) == 1
+            vectors = _odd if equations.is_balanced else _planar if is_planar else _generic
+            points = equations.points([_with_length(equations, v) for v in vectors(equations)])
     return points[np.isfinite(points).all(axis=1)]
-
-
-def _vectors(equations: Equations) -> Sequence[Array]:
-    """Return approximate (z_0, z) by the secular polynomial, or the one of a special case."""
-    if equations.is_balanced:
-        return _odd(equations)
-    return _planar(equations) if len(equations.stiffness) == 1 else list(_generic(equations))
 
 
 def _generic(equations: Equations) -> Array:
     """Return the points (z_0, z) over the roots of the secular polynomial."""
     N1, N2, Y = _secular(equations)
     products = [np.convolve(N2, np.append(N1[:1], N1[1:] - N2)), *(-np.convolve(row, row) for row in Y)]
-    length = len(products[0])
-    polynomial = sum(np.pad(row, (length - len(row), 0)) for row in products)
+    polynomial = functools.reduce(np.polyadd, products)
     if not np.all(np.isfinite(polynomial)) or not np.any(polynomial):
         return np.zeros((0, len(Y) + 1))
     mu = np.roots(polynomial)
@@ -90,8 +84,7 @@ def _half_of_p(equations: Equations) -> Array:
 def _odd(equations: Equations) -> list[Array]:
     """Return the two roots z_0 z = B^-1 r; one if r = 0, where the other is a whole sphere of half-turns."""
     w = equations.target / equations.stiffness
-    spread = np.sqrt(1 - 4 * (w @ w) + 0j)
-    larger = (1 + spread) / 2
+    larger = (1 + np.sqrt(1 - 4 * (w @ w) + 0j)) / 2
     squares = [larger, (w @ w) / larger] if w @ w else [larger]
     return [np.array([z0, *(w / z0)]) for z0 in np.sqrt(np.array(squares))]
 
@@ -132,7 +125,8 @@ def roots_of(equations: Equations) -> list[Root]:
     """Return the isolated roots: of a real problem the real ones by step angle, then the complex ones."""
     roots = _merge(equations, polish(equations, candidates(equations)))
     complete = equations.is_balanced or _count(roots) == equations.count
-    if not complete or _is_crowded(equations, roots):
+    is_crowded = len(equations.stiffness) > 1 and not equations.is_balanced and any(r.multiplicity > 2 for r in roots)
+    if not complete or is_crowded:  # iterations that missed hidden roots may have been counted at a multiple one
         by_path = _merge(equations, _by_continuation(equations))
         roots = by_path if _count(by_path) >= min(_count(roots), equations.count) else roots
     if not _is_complex(equations):
@@ -142,11 +136,6 @@ def roots_of(equations: Equations) -> list[Root]:
 
 def _count(roots: list[Root]) -> int:
     return sum(root.multiplicity for root in roots)
-
-
-def _is_crowded(equations: Equations, roots: list[Root]) -> bool:
-    """Return whether iterations that missed hidden roots may have ended on a multiple root and been counted there."""
-    return len(equations.stiffness) > 1 and not equations.is_balanced and any(r.multiplicity > 2 for r in roots)
 
 
 def place(root: Root) -> tuple:
@@ -166,9 +155,7 @@ def _finite(equations: Equations, points: Inexact[Array, "B m"]) -> Inexact[Arra
     return points[(np.abs(points) < equations.horizon).all(axis=1)]
 
 
-def _newton(
-    equations: Equations, x: Inexact[Array, "B m"], steps: int = 40, reach: float = np.inf
-) -> tuple[Inexact[Array, "B m"], Bool[np.ndarray, "B"]]:
+def _newton(equations: Equations, x: Points, steps: int = 40, reach: float = np.inf) -> tuple[Points, Bool[Array, "B"]]:
     """Return the roots that Newton's method reaches, moving no further than `reach` at first, and where it does."""
     x, best, least, active = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
     for i in range(steps):

@@ -99,9 +99,8 @@ class AbstractBranchRule(abc.ABC):
         return Outcome.successful, zeros[choices[0]].point.real
 
     def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
-        """Return the numbers of the values that may be chosen, by default of all real ones."""
-        del kick
-        return np.flatnonzero(values.is_real).tolist()
+        """Return the numbers of the values that may be chosen; rules that follow one value do not ask."""
+        raise NotImplementedError
 
 
 @dataclasses.dataclass(frozen=True)
@@ -185,8 +184,7 @@ class Chosen(AbstractBranchRule):
 
     def choices(self, kick: Kick, values: _values.Branches) -> list[int]:
         """Ask the function, and refuse an answer that is no real value."""
-        present = displacement_at(kick.frame, kick.point)
-        index = call("branch(branches, present)", self.function, values, present)
+        index = call("branch(branches, present)", self.function, values, displacement_at(kick.frame, kick.point))
         if index is None:
             return []
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
@@ -313,20 +311,19 @@ class RuleStepper(AbstractBodyStepper):
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
-        (reduced, pose), group, frame = first.numbers, self.motion.system.group, frame_of("simulate", self.motion)
+        (reduced, pose), frame = first.numbers, frame_of("simulate", self.motion)
         code, place = first_place("simulate", frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
-        goal = goal_of(frame, place.momentum)
-        now = _Now(place, goal, place.momentum, group.matrix_from_pose(pose), 0)
+        g = self.motion.system.group.matrix_from_pose(pose)
+        now = _Now(place, goal_of(frame, place.momentum), place.momentum, g, 0)
         return np.concatenate((place.momentum, frame.chart(place.point), pose, now.vector)), code
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by the rule, and carry the pose along."""
         write_first(state, rows)
         frame, group = frame_of("simulate", self.motion), self.motion.system.group
-        good, code = 0, Outcome.successful
-        width, often = self.width, _BATCH if self.rule.is_nearest else 1
+        good, code, often = 0, Outcome.successful, _BATCH if self.rule.is_nearest else 1
         now = self._now(frame, state)
         while code == 0 and good < steps:
             code, ahead, goal = self._following(frame, now, min(steps - good, often - now.step % often))
@@ -346,34 +343,26 @@ class RuleStepper(AbstractBodyStepper):
                 goal, begin = goal_of(frame, place.momentum), place.momentum
             g = matrices[-1] if step % often else group.matrix_from_pose(poses[-1])
             now = _Now(place, goal, begin, g, step)
-        state[width:] = now.vector
+        state[self.width :] = now.vector
         keep_row(state, rows, good // every)
         return good, int(code)
 
     def _following(self, frame: Frame, now: "_Now", most: int) -> tuple[Outcome, Place, np.ndarray | None]:
-        """Return states that follow as rows, and the goal of the last one if the kernel found them.
+        """Return up to `most` states that follow as rows, and the goal of the last one if the kernel found them.
 
-        The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time.
+        The kernel takes the clear steps to the nearest value, `next_place` all others, one at a time. Momenta are
+        summed from the one at which the goals began, so that they do not depend on how steps are cut.
         """
         if self.rule.is_nearest:
-            ahead, goals = self._clear_places(frame, now, most)
-            if len(goals):
-                return Outcome.successful, ahead, goals[-1]
+            h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
+            first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
+            goals, points = np.empty((most, len(now.goal))), np.empty((most, len(point)))
+            if steps := kernels.advance_to_nearest(body, now.goal, point, goals, points):
+                change = goals[:steps] - first
+                momenta = now.begin + frame.momentum(change[:, :k], change[:, -1]) / h
+                return Outcome.successful, Place(points[:steps], momenta), goals[steps - 1]
         code, following = next_place(frame, self.rule, now.place)
-        rows = slice(0, int(code == 0))
-        return code, Place(following.point[None][rows], following.momentum[None][rows]), None
-
-    def _clear_places(self, frame: Frame, now: "_Now", count: int) -> tuple[Place, Float[np.ndarray, "C g"]]:
-        """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
-
-        Momenta are summed from the one at which the goals began, so that they do not depend on how steps are cut.
-        """
-        h, k, (point, _) = float(self.motion.time_step), len(frame.stiffness), now.place
-        first, body = goal_of(frame, now.begin), nearest_body(frame.equations(h * now.begin))
-        goals, points = np.empty((count, len(now.goal))), np.empty((count, len(point)))
-        steps = kernels.advance_to_nearest(body, now.goal, point, goals, points)
-        change = goals[:steps] - first
-        return Place(points[:steps], now.begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
+        return code, Place(*(x[None][: int(code == 0)] for x in following)), None
 
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""

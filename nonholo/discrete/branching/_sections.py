@@ -9,7 +9,6 @@ Reference: docs/theory/branches.md, "Any rows".
 
 import dataclasses
 import functools
-from collections.abc import Sequence
 from typing import Any, ClassVar, TypeAlias, cast
 
 import numpy as np
@@ -67,10 +66,6 @@ class Section(Equations):
         """Sizes of coordinates that count as infinite."""
         return np.full(1 + self.slices.shape[1], FAR * max(1.0, np.abs(self.target).max()))
 
-    def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
-        """Stack points, none as well."""
-        return np.array(rows).reshape(-1, 1 + self.slices.shape[1])
-
     def starts(self) -> Inexact[np.ndarray, "B m"]:
         """Return no approximate roots: they are followed."""
         return self.points([])
@@ -118,8 +113,7 @@ class Section(Equations):
         k, (_, back) = len(self.target), self.sections.matrices(x)
         along = np.swapaxes(np.linalg.svd(self.slope(x)[..., : -k - 1, 1:])[2][..., -k:, :].conj(), -1, -2)
         dW, _ = self.sections.moves(x)
-        turns = _flat(back[..., None, :, :] @ dW)
-        R = np.linalg.qr(np.swapaxes(turns, -1, -2) @ along)[1]
+        R = np.linalg.qr(np.swapaxes(_flat(back[..., None, :, :] @ dW), -1, -2) @ along)[1]
         return np.linalg.svd((self.slices @ along) @ np.linalg.inv(R), compute_uv=False)[..., -1]
 
 
@@ -240,8 +234,7 @@ def _is_whole(generic: Section, points: Inexact[np.ndarray, "B m"]) -> bool:
         if len(ahead) != len(points):
             return False
         sums.append(ahead.sum(axis=0))
-    bend = sums[0] - 2 * sums[1] + sums[2]
-    return bool(np.abs(bend).max() <= _LINEAR * np.abs(sums).max())
+    return bool(np.abs(sums[0] - 2 * sums[1] + sums[2]).max() <= _LINEAR * np.abs(sums).max())
 
 
 AnyFrame: TypeAlias = Frame | Sections

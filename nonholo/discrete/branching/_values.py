@@ -77,9 +77,8 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     height = np.einsum("bij,ij->b", square, land.inertia)
     ascent = np.einsum("bii->b", square) - land.sharpness * square[:, 1, 1]  # kappa rho, one half on the ridge
     energy, (center, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
-    kinds = ["inner", "outer", "between"]
     below = energy < saddle
-    return np.select([below & (ascent < 0.5), below, energy < center], kinds, default="")
+    return np.select([below & (ascent < 0.5), below, energy < center], ["inner", "outer", "between"], default="")
 
 
 def regular_landscape(discrete: Discretization) -> Landscape | None:
@@ -197,6 +196,12 @@ def branches_of(frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roo
     is_real = np.array([root.is_real for root in zeros], dtype=bool)
     multiplicity = np.array([root.multiplicity for root in zeros], dtype=np.int64)
     code, increment = principal or principal_increment(discrete, canonical)
+    index = None
+    if code == 0 and len(zeros):  # else all values are too far away
+        own = system.from_canonical_frame(increment)
+        distances = np.where(is_real, np.linalg.norm((X - own) * frame.stretch, axis=(1, 2)), np.inf)
+        is_near = distances.min() <= SAME * max(1.0, float(np.linalg.norm(own * frame.stretch)))
+        index = int(np.argmin(distances)) if is_near else None
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
@@ -205,7 +210,7 @@ def branches_of(frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roo
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(frame, code, increment, X, is_real),
+        principal=index,
         missing=max(0, equations.most - int(multiplicity.sum())),
     )
 
@@ -233,22 +238,8 @@ def checked_point(where: str, frame: AnyFrame, displacement: Any) -> tuple[Float
 
 def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:
     """Return the outcome and the verified principal displacement, canonical, minus the identity."""
-    route = discrete.route.compiled_route
-    if route is None:
-        return Outcome.branch_unverified, None
-    outcome, chart = route.first_root(canonical)
+    outcome, chart = discrete.route.first_root(canonical)
     return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
-
-
-def _index_of(frame: AnyFrame, code: int, increment: Array, X: np.ndarray, is_real: np.ndarray) -> int | None:
-    """Return the index of the verified principal root, canonical, among displacements, all minus the identity."""
-    if code != 0 or not len(is_real):  # all values are too far away
-        return None
-    principal = frame.discrete.system.from_canonical_frame(increment)
-    away = np.linalg.norm((X - principal) * frame.stretch, axis=(1, 2))
-    distances = np.where(is_real, away, np.inf)
-    best = int(np.argmin(distances))
-    return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal * frame.stretch))) else None
 
 
 def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
@@ -268,8 +259,7 @@ def certified_over(owner: str, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Br
         zeros.append(Root(x if x[0].real >= 0 else -x, int(m), bool(real)))
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
     roots = frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], increment[order]
-    values = branches_of(frame, canonical, roots)
-    return dataclasses.replace(values, certified=True, radius=radius[order])
+    return dataclasses.replace(branches_of(frame, canonical, roots), certified=True, radius=radius[order])
 
 
 _FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"
@@ -492,5 +482,4 @@ def _inverse(where: str, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N
     if len(near) > 1 and values.principal not in near:
         got = f"a momentum that {len(near)} of them have"
         raise error(where, "determine the displacement", got, "Use `displacements_over` and choose.")
-    best = near[0] if len(near) == 1 else values.principal
-    return values.displacement[best].real - system.group.identity
+    return values.displacement[near[0] if len(near) == 1 else values.principal].real - system.group.identity

@@ -36,10 +36,6 @@ class Family(NamedTuple):
     norm: fmpz_poly
 
 
-_Secular = tuple[fmpz_poly, list[fmpz_mat], fmpz_poly, fmpz_poly, list[fmpz_poly]]
-r"""Polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
-
-
 def families(problem: Problem) -> Iterator[Family]:
     """Yield polynomials that have every isolated displacement over the momentum as a root, each once."""
     if len(problem.excess) == 1:
@@ -63,10 +59,8 @@ def _planar(problem: Problem) -> Iterator[Family]:
 
 def _quadratic(problem: Problem) -> Iterator[Family]:
     r"""The quadratic of $z_0^2$: $z_0z = w = B^{-1}r$, $z_0^4 - z_0^2 + w\cdot w = 0$; if w = 0 only the identity."""
-    d = problem.excess
-    solution = fmpq_mat(problem.stiffness).solve(fmpq_mat(fmpz_mat([[x] for x in d])))
-    numerators, unit = solution.numer_denom()
-    w = [numerators[i, 0] for i in range(len(d))]
+    numerators, unit = fmpq_mat(problem.stiffness).solve(fmpq_mat(_column(problem.excess))).numer_denom()
+    w = numerators.entries()
     if not any(w):
         yield Family(_X, [_ONE, *(fmpz_poly() for _ in w)], _ONE)
         return
@@ -102,15 +96,20 @@ def _generic(problem: Problem) -> Iterator[Family]:
     regular = _without(_without(polynomial, common), n1)
     if regular.degree() > 0:
         yield Family(regular, [n2, *y], n1 * n2)
-    yield from _hidden_roots(problem, common, [n1, *y])
+    for row in [n1, *y]:
+        common = common.gcd(row)
+    for factor, _ in common.factor()[1]:
+        if factor.degree() > 1:
+            raise UncertainError("two roots share an irrational value of mu")
+        yield from _on_line(problem, factor)
     lever, k = problem.lever, len(y)
-    if problem.half == 0 and (lever is None or lever.arm != 0):
-        missing = 2 * k + (lever is not None) - polynomial.degree()
-        if missing > 0:
-            yield _half_turn(problem, missing)
+    missing = 2 * k + (lever is not None) - polynomial.degree()
+    if problem.half == 0 and (lever is None or lever.arm != 0) and missing > 0:
+        yield _half_turn(problem, missing)
 
 
-def _secular(problem: Problem) -> _Secular:
+def _secular(problem: Problem) -> tuple[fmpz_poly, list[fmpz_mat], fmpz_poly, fmpz_poly, list[fmpz_poly]]:
+    r"""Return polynomials in $\mu$: $\Delta = \det(B + \mu)$, adj(B + mu) c by powers, N_1, N_2 and Y."""
     B, c, d = problem.stiffness, _column(problem.coupling), _column(problem.excess)
     determinant = (-B).charpoly()
     Ac, Ad = (_solve(B, [x * side for x in determinant.coeffs()]) for side in (c, d))
@@ -138,18 +137,11 @@ def _polynomials(coefficients: Iterable[fmpz_mat]) -> list[fmpz_poly]:
     return [fmpz_poly(list(row)) for row in zip(*(x.entries() for x in coefficients), strict=True)]
 
 
-def _hidden_roots(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:
-    r"""The roots at a $\mu$ where the linear equations for (y, s) are singular and yet have solutions."""
-    for row in numerators:
-        common = common.gcd(row)
-    for factor, _ in common.factor()[1]:
-        if factor.degree() > 1:
-            raise UncertainError("two roots share an irrational value of mu")
-        yield from _on_line(problem, factor)
-
-
 def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
-    """The isolated solutions on the line of (y, s) that solve the linear equations at a rational mu."""
+    r"""The isolated solutions on the line of (y, s) that solve the linear equations at a rational $\mu$.
+
+    The equations are singular there and yet may have solutions.
+    """
     M, right = _equations_at(problem, *factor.coeffs())
     if M.rank() + 1 < M.ncols() or _augment(M, right).rank() >= M.ncols():
         return  # no solution, or whole curves of them
@@ -162,8 +154,9 @@ def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
         raise UncertainError("the multiplicity of a root that the secular polynomial hides is not known")
     compatible = compatible // compatible.gcd(s)
     if compatible.degree() > 0:
-        unit, whole = _clear_denominators([*y, s])
-        yield Family(compatible.numer(), [fmpz_poly([unit]), *whole[:-1]], unit * whole[-1])
+        unit = functools.reduce(fmpz.lcm, map(fmpq_poly.denom, (*y, s)))
+        *numerators, last = [(row * unit).numer() for row in (*y, s)]
+        yield Family(compatible.numer(), [fmpz_poly([unit]), *numerators], unit * last)
 
 
 def _equations_at(problem: Problem, low: fmpz, high: fmpz) -> tuple[fmpz_mat, fmpz_mat]:
@@ -181,14 +174,6 @@ def _augment(M: fmpz_mat, right: fmpz_mat) -> fmpz_mat:
 
 def _shares_root(polynomial: fmpq_poly, other: fmpq_poly) -> bool:
     return polynomial.gcd(other).degree() > 0
-
-
-def _clear_denominators(polynomials: list[fmpq_poly]) -> tuple[fmpz, list[fmpz_poly]]:
-    """Return a common denominator of polynomials and their numerators over it."""
-    unit = fmpz(1)
-    for polynomial in polynomials:
-        unit = unit.lcm(polynomial.denom())
-    return unit, [(polynomial * unit).numer() for polynomial in polynomials]
 
 
 def _line(M: fmpz_mat, right: fmpz_mat) -> list[tuple[fmpq, fmpq]]:
@@ -250,9 +235,8 @@ def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | 
         return "no displacement is isolated"
     for bits in PRECISIONS:
         places = [x._replace(balls=sharpen(x.factor, x.balls, bits) or x.balls) for x in places]
-        values = _values(problem, places, bits)
-        if values is not None:
-            return _as_matrices(discrete, problem, values)
+        if (values := _values(problem, places, bits)) is not None:
+            return _as_matrices(discrete, problem, *values)
     return f"{PRECISIONS[-1]} bits do not separate the values from infinity"
 
 
@@ -261,8 +245,7 @@ def locate(problem: Problem) -> list[Located]:
     places = []
     for family in families(problem):
         for factor, multiplicity in family.polynomial.factor_squarefree()[1]:
-            balls = isolate(factor)
-            if balls is None:
+            if (balls := isolate(factor)) is None:
                 raise UncertainError("the roots are not isolated from the real axis")
             places.append(Located(family, factor, multiplicity, balls))
     return places
@@ -287,15 +270,16 @@ def _values(problem: Problem, places: list[Located], bits: int) -> tuple[np.ndar
     return (products, radii, multiplicities, real) if sharp.all() else None
 
 
-def _as_matrices(discrete: Discretization, problem: Problem, values: tuple[np.ndarray, ...]) -> Enclosures:
-    """Return the displacements in the user's frame."""
-    products, radii, multiplicity, is_real = values
+def _as_matrices(discrete: Discretization, problem: Problem, products: Any, radii: Any, *facts: Any) -> Enclosures:
+    """Return the displacements seen from the user's frame, whose entries are taken as exact, and their radii."""
     index, sign = _places(1 + len(problem.excess), problem.lever is not None)
     X = sign * products[:, index]  # only signs are changed
     group, frame = discrete.system.group, np.asarray(discrete.system.frame)
     if not np.array_equal(frame, group.identity):
-        X, radii = _turn(X, radii, frame, np.asarray(group.inverse(frame)))
-    return X, radii + _ROUNDING * (1 + _largest(X)), multiplicity, is_real
+        back = np.asarray(group.inverse(frame))
+        sizes = np.abs(frame).sum(axis=1).max() * np.abs(back).sum(axis=0).max()
+        X, radii = frame @ X @ back, sizes * (radii + 4 * _ROUNDING * _largest(X))
+    return X, radii + _ROUNDING * (1 + _largest(X)), *facts
 
 
 def _products(problem: Problem, q: list[acb], scale: acb) -> list[acb]:
@@ -308,24 +292,19 @@ def _products(problem: Problem, q: list[acb], scale: acb) -> list[acb]:
             S[i][j] = S[j][i] = multiple * q[j]
     square = _sum(S[i][i] for i in range(1, k + 1))
     products = [square, *S[0][1:], *(S[i][j] for i in range(1, k + 1) for j in range(i, k + 1))]
-    if lever is None:
-        return products
-    return products + [x - y for x, y in zip(_stretch(problem, lever, S, square), _across(lever, S), strict=True)]
+    return products if lever is None else products + _slides(problem, lever, S, square)
 
 
-def _stretch(problem: Problem, lever: Lever, S: list[list[acb]], square: acb) -> list[acb]:
-    r"""Return $u\,(z_0, z)$, from $uz_0 = hp_1/m + 2a_1z\cdot z$; at a half-turn $ma_1uz = 2zz^Tr$."""
+def _slides(problem: Problem, lever: Lever, S: list[list[acb]], square: acb) -> list[acb]:
+    r"""Return $2(u - a_\perp\cdot z)(z_0, z)$, $uz_0 = hp_1/m + 2a_1z\cdot z$; at a half-turn $ma_1uz = 2zz^Tr$."""
+    across = [_sum(o * x for o, x in zip(lever.offset, row[1:], strict=True)) for row in S]
     if S[0][0] == 0:
         r = [c + d for c, d in zip(problem.coupling, problem.excess, strict=True)]
-        return [acb(0), *(_sum(x * y for x, y in zip(row[1:], r, strict=True)) / lever.moment for row in S[1:])]
-    first = lever.push + lever.arm * square
-    along = first / S[0][0]
-    return [first, *(along * x for x in S[0][1:])]
-
-
-def _across(lever: Lever, S: list[list[acb]]) -> list[acb]:
-    r"""Return $2(a_\perp\cdot z)\,(z_0, z)$."""
-    return [_sum(o * x for o, x in zip(lever.offset, row[1:], strict=True)) for row in S]
+        lengths = [acb(0), *(_sum(x * y for x, y in zip(row[1:], r, strict=True)) / lever.moment for row in S[1:])]
+    else:
+        first = lever.push + lever.arm * square
+        lengths = [first, *(first / S[0][0] * x for x in S[0][1:])]
+    return [x - y for x, y in zip(lengths, across, strict=True)]
 
 
 def _sum(terms: Iterable[acb]) -> acb:
@@ -347,12 +326,6 @@ def _places(n: int, sleigh: bool) -> tuple[np.ndarray, np.ndarray]:
     sign[:n] = -1.0
     sign[0, 1:] = 1.0
     return index, sign
-
-
-def _turn(X: np.ndarray, radii: np.ndarray, frame: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements seen from the user's frame, whose entries are taken as exact, and their radii."""
-    sizes = np.abs(frame).sum(axis=1).max() * np.abs(back).sum(axis=0).max()
-    return frame @ X @ back, sizes * (radii + 4 * _ROUNDING * _largest(X))
 
 
 def _largest(X: np.ndarray) -> np.ndarray:

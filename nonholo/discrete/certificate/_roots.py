@@ -9,9 +9,10 @@ here, after multiplication by one power of two. Axes are those of the body: noth
 Reference: docs/theory/branches.md, "Certificates".
 """
 
+import contextlib
 import math
-from itertools import chain, combinations, pairwise
-from typing import Any, NamedTuple
+from itertools import chain, combinations, pairwise, starmap
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpz, fmpz_mat, fmpz_poly
@@ -95,18 +96,11 @@ def sharpen(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb] |
         slope = value.derivative()
         squares = [_around(value, slope, z.mid(), bits) for z in centers]
     flat = [z.imag == 0 for z in centers]
-    if 2 * len(flat) - sum(flat) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
+    if 2 * len(flat) - sum(flat) != polynomial.degree() or any(starmap(acb.overlaps, combinations(squares, 2))):
         return None
-    candidates = (_place(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
-    balls = [ball for ball in candidates if ball is not None]
-    return balls if len(balls) == len(flat) else None
-
-
-def _place(square: acb, *, real: bool) -> acb | None:
-    """Return the ball of the root in a square, of a real root on the axis; None if it lies on the wrong side."""
-    if real:
-        return acb(square.real) if square.imag.mid() == 0 else None
-    return square if square.imag > 0 else None
+    pairs = list(zip(squares, flat, strict=True))
+    on_side = all(square.imag.mid() == 0 if on_axis else square.imag > 0 for square, on_axis in pairs)
+    return [acb(square.real) if on_axis else square for square, on_axis in pairs] if on_side else None
 
 
 def _around(value: acb_poly, slope: acb_poly, center: acb, bits: int) -> acb:
@@ -152,12 +146,10 @@ def _eigenvalues(polynomial: fmpz_poly) -> tuple[int, list[complex]]:
     largest = max(size + exponent * i for i, size in enumerate(sizes))
     cut = [max(0, size - 64) for size in sizes]
     b = [math.ldexp(int(x >> c), c + exponent * i - largest) for i, (x, c) in enumerate(zip(a, cut, strict=True))]
-    if abs(b[d]) < 1e-290:
-        return exponent, []
-    try:
-        return exponent, np.roots(b[::-1]).astype(complex).tolist()
-    except np.linalg.LinAlgError:
-        return exponent, []
+    with contextlib.suppress(np.linalg.LinAlgError):
+        if abs(b[d]) >= 1e-290:
+            return exponent, np.roots(b[::-1]).astype(complex).tolist()
+    return exponent, []
 
 
 def _parabola(polynomial: fmpz_poly, middle: arb) -> list[acb]:
@@ -173,6 +165,5 @@ def _parabola(polynomial: fmpz_poly, middle: arb) -> list[acb]:
 def _search(polynomial: fmpz_poly, bits: int) -> list[acb]:
     """Return the centers that FLINT finds, however long it takes."""
     with ctx.workprec(bits):
-        roots: Any = polynomial.complex_roots()
-        centers = [acb(z).mid() for z, _ in roots]
+        centers = [acb(z).mid() for z, _ in cast(Any, polynomial.complex_roots())]
     return [z for z in centers if z.imag >= 0]

@@ -19,9 +19,8 @@ from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_n
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, free_rows, weights
 from nonholo.discrete.definition import _step
-from nonholo.discrete.definition._precision import compile_double
+from nonholo.discrete.definition._step import compile_double
 from nonholo.discrete.routes import ScalarStep
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
 
 _CLOSE, _MOST = 1e-9, 20  # of the last correction before two that count; corrections
@@ -77,7 +76,7 @@ _State = tuple[Array, Array, Any]
 _Impulse = Callable[[Array, Array, Array], Array]
 """From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
 _Forces = tuple[_Impulse | None, Forced | None]
-"""Kicks at the nodes, or forces that act at the displacement."""
+"""Kicks at the nodes, half the impulse of a step, or forces that act by equal half impulses at the displacement."""
 
 
 def roll_out(
@@ -97,10 +96,9 @@ def roll_out(
     """
     (name, value, g), (steps, every) = start, sizes
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
-    impulse, rows = impulse_of(discrete, forced, controls, steps)
-    forces = impulse, forced if is_balanced(discrete, forced) else None
+    forces, rows = forces_of(discrete, forced, controls, steps)
     if forces[1] is None and scalar is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, scalar, g, impulse)
+        step, C, at = _closed_step(discrete, scalar, g, forces[0])
         m, pose, size = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
     else:
         step, at = _in_stages(discrete, scalar, forces), lambda node: (node.m, node.y, node.g, node.after[1])
@@ -135,29 +133,23 @@ def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...],
     return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
 
-def impulse_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: int) -> tuple[Any, Any]:
-    """Return the function of kicks, half the impulse of a step, and the body covectors of steps; None where free.
+def forces_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: int) -> tuple[_Forces, Any]:
+    """Return the forces around steps of a free discretization, and the body covectors of steps; None where free.
 
     Nothing of them acts over what follows the last step.
     """
-    half, dim = discrete.time_step / 2, discrete.system.group.dim
-    rows = rows_of(controls, steps, dim)
+    half, rows = discrete.time_step / 2, rows_of(controls, steps, discrete.system.group.dim)
     if forced is None:
-        return (None, None) if rows is None else (lambda _r, _g, row: half * row, rows)
+        return (None if rows is None else (lambda _r, _g, row: half * row), None), rows
     rows = (0.0 if rows is None else rows) + forced.rows(np.arange(steps + 1))
-    if is_balanced(discrete, forced):
-        return None, rows
+    if forced.is_balanced(cast(Any, discrete).conserves_energy, discrete.order > 2):
+        return (None, forced), rows
     kick = None if forced.is_spatial else forced.kick_at(forced.group.identity, half)
 
     def impulse(r: Array, g: Array, row: Array) -> Array:
         return forced.impulse(r, forced.potential_force(g) + row, half, kick or forced.kick_at(g, half))
 
-    return impulse, rows
-
-
-def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:
-    """Whether forces act by equal half impulses at the displacement around steps of a free discretization."""
-    return forced is not None and forced.is_balanced(cast(Any, discrete).conserves_energy, discrete.order > 2)
+    return (impulse, None), rows
 
 
 def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Array) -> Float[Array, "dim"]:
@@ -296,20 +288,15 @@ def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]
 
     The momenta change by the difference of two, in which the error of the root is not seen.
     """
-    system = discrete.system
-    after = _rectify(system.group, system.moved(g, _step.displacement_of(discrete, y)))
+    system, group = discrete.system, discrete.system.group
+    after = system.moved(g, _step.displacement_of(discrete, y))
+    if group.has_skew_part:  # rounding errors across a group of isometries are squared: R (3 - R* R) / 2
+        n = free_rows(group)
+        R = after[:n, :n]
+        square = group.form_adjoint(after) @ after if n == group.size else R.T @ R
+        after = after.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=after.dtype) - square) / 2)
     arriving = _step.restricted(discrete, _step.momentum_of(discrete, y, g, "right"), after)
     return r + (arriving - _step.restricted(discrete, _step.momentum_of(discrete, y, g, "left"), g)), after
-
-
-def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
-    """Return a pose whose rounding errors across a group of isometries are squared: R (3 - R* R) / 2."""
-    if not group.has_skew_part:
-        return g
-    n = free_rows(group)
-    R = g[:n, :n]
-    square = group.form_adjoint(g) @ g if n == group.size else R.T @ R
-    return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
 def _decode(
@@ -346,8 +333,7 @@ def step_slopes(
     States are momenta along the constraint, poses, and charts, with which nothing is solved for; the parts of a
     composition search for their own.
     """
-    forces = impulse_of(discrete, forced, None, 0)[0], forced if is_balanced(discrete, forced) else None
-    row = jnp.zeros(discrete.system.group.dim)
+    forces, row = forces_of(discrete, forced, None, 0)[0], jnp.zeros(discrete.system.group.dim)
 
     def of_parts(r: Array, g: Array, _: Array) -> Array:
         def stage(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], None]:
@@ -359,10 +345,9 @@ def step_slopes(
         begin = jnp.eye(len(row) + len(r)), r, g
         return jax.lax.scan(stage, begin, jnp.asarray(weights(discrete.order)))[0][0]
 
-    def of_one(r: Array, g: Array, y: Array) -> Array:
-        return _slope_of(discrete, forces, (r, g, row), y)
-
-    return jax.vmap(of_one if discrete.order == 2 else of_parts)(*states)
+    if discrete.order > 2:
+        return jax.vmap(of_parts)(*states)
+    return jax.vmap(lambda r, g, y: _slope_of(discrete, forces, (r, g, row), y))(*states)
 
 
 def _slope_of(part: Any, forces: _Forces, state: _State, y: Array) -> Float[Array, "m m"]:
@@ -391,11 +376,11 @@ def step_residual(discrete: Scheme, forced: Forced | None, state: _Pair, y: Arra
     """
     (g, r), (ahead, following), system = state, after, discrete.system
     arriving = _step.restricted(discrete, _step.momentum_of(discrete, y, g, "right"), ahead)
-    if is_balanced(discrete, forced):
-        push = _step.restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
+    (impulse, balance), _ = forces_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
+    if impulse is None:
+        push = _step.restricted(discrete, half_impulse(discrete, cast(Forced, balance), y, g, force), g)
         r_half, arriving = r + push, arriving + push
     else:
-        impulse, _ = impulse_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
         r_half = r + _step.restricted(discrete, impulse(r, g, force), g)
         arriving = arriving + _step.restricted(discrete, impulse(arriving, ahead, force), ahead)
     gap = system.moved(g, _step.displacement_of(discrete, y)) - ahead

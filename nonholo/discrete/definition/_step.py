@@ -5,9 +5,12 @@ steps are tested against it. With a right-invariant constraint the unknown is U 
 The principal root is found by continuation from zero, then Newton's method.
 
 Functions of one matrix, the library's or the user's, in JAX: values, derivatives along the group, momenta. The
-principal displacement for JAX is that of the closed form of a body where it has one, which its kernel shares.
+principal displacement for JAX is that of the closed form of a body where it has one, which its kernel shares. Eager
+calls run in a local 64-bit scope, traced calls must already be 64-bit.
 """
 
+import contextlib
+import contextvars
 import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -18,13 +21,48 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
+from nonholo.base.checks import is_traced
+from nonholo.base.numerics import double_precision
+from nonholo.base.progress import compiling, setting
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.traced import TracedFunction, implicit
 from nonholo.base.types import Array, Float
-from nonholo.discrete._scheme import Scheme, legendre
-from nonholo.discrete.definition._precision import compile_double, in_double
+from nonholo.discrete._scheme import Scheme, legendre, register
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
+
+_float32 = contextvars.ContextVar("float32_allowed", default=False)
+register()
+
+
+def allow_float32() -> contextlib.AbstractContextManager[None]:
+    """Let the JAX route be traced in 32 bits, where energy is conserved to 1e-7 instead of rounding.
+
+    Example:
+        >>> with nh.allow_float32():
+        ...     pass
+    """
+    return setting(_float32, True)
+
+
+def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a JAX function: eagerly in a 64-bit scope with NumPy results, or as it is on traced 64-bit input."""
+    tracers = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
+    if not tracers:
+        with double_precision(), compiling("a map", compiling, (function, jax.tree.structure(arguments))):
+            return jax.tree.map(np.asarray, function(*arguments))
+    if not _float32.get() and any(x.dtype == np.float32 for x in tracers):
+        raise TypeError(
+            "`nonholo` must be traced in 64 bits. Got float32. Wrap the call in `with jax.enable_x64(True):`, "
+            "or accept single precision with `with nonholo.allow_float32():`."
+        )
+    return function(*arguments)
+
+
+def compile_double(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a JAX function, which is then called as `in_double` calls it."""
+    return functools.wraps(function)(functools.partial(in_double, equinox.filter_jit(function)))
+
 
 _FIRST = 0.25  # first continuation step, in s
 _SMALLEST = 1e-7  # continuation step, relative to s, below which the branch is given up
@@ -188,8 +226,7 @@ def _continue(residual: Residual, known_root: Root, target: Array, guess: Array 
 
 
 def _is_unfinished(path: _Path) -> Array:
-    least = jnp.finfo(path.s.dtype).tiny * 1e3
-    return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, least))
+    return (path.s < 1) & (path.size > jnp.maximum(_SMALLEST * path.s, 1e3 * jnp.finfo(path.s.dtype).tiny))
 
 
 def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
@@ -277,8 +314,7 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
 
 def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
-    W = displacement_of(discrete, y)
-    after = discrete.system.moved(g, W)
+    after = discrete.system.moved(g, displacement_of(discrete, y))
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 
@@ -306,15 +342,13 @@ def momenta_by_derivative(
 ) -> Float[Array, "... dim"]:
     """Return the momenta P(W) (left) or Ad*_W P(W) (right) of a discrete Lagrangian by automatic differentiation."""
 
-    def momentum(V: Array) -> Array:
-        def variation(x: Array) -> Array:
-            g = group.exp(x)
-            return lagrangian(g @ V if side == "left" else V @ g)
-
-        return jax.grad(variation)(jnp.zeros(group.dim, V.dtype))
+    def variation(x: Array, V: Array) -> Array:
+        g = group.exp(x)
+        return lagrangian(g @ V if side == "left" else V @ g)
 
     flat = jnp.reshape(W, (-1, *W.shape[-2:]))
-    return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))
+    momenta = jax.vmap(jax.grad(variation), (None, 0))(jnp.zeros(group.dim, W.dtype), flat)
+    return jnp.reshape(momenta, (*W.shape[:-2], group.dim))
 
 
 ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have

@@ -19,7 +19,7 @@ from nonholo.discrete import branching
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
-from nonholo.discrete.definition._precision import compile_double, in_double
+from nonholo.discrete.definition._step import compile_double, in_double
 from nonholo.discrete.routes import AbstractBodyStepper, Compact, ScalarRoute, ScalarStep
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 from nonholo.systems import refuse_fixed_in_space
@@ -136,8 +136,7 @@ class DefinitionStepper(AbstractBodyStepper):
     def _normal(self, ahead: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return momentum and pose one sweep ahead, the pose freed of rounding errors."""
         group = self.motion.system.group
-        g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1])))
-        return ahead[0], g.ravel()
+        return ahead[0], group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(ahead[1]))).ravel()
 
 
 def _coordinates(discrete: Scheme, W: np.ndarray) -> np.ndarray:

@@ -404,14 +404,16 @@ def reversal_defects(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
 
     Infinite where the step back cannot be computed, NaN where there is no step forward.
     """
-    return _of_single_steps(route, states) if route.order == 2 else _of_compositions(route, states)
-
-
-def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return them for steps back to the inverse displacement.
-
-    The map is multivalued and its principal value is not always the way back: the nearest value counts.
-    """
+    if route.order > 2:  # back from the opposite momentum
+        r = states.reduced_momentum
+        after, there, ahead = route.whole_steps(r, step_poses(states))
+        good = ahead == Outcome.successful
+        back, _, behind = route.whole_steps(-after[good], there[good])
+        distances = np.full(len(r), np.nan)
+        far = _largest(back + r[good]) / _largest(r[good])
+        distances[good] = np.where(behind == Outcome.successful, far, np.inf)
+        return distances
+    # back to the inverse displacement by the nearest value of the map: its principal value is not always the way back
     r, cayley = route.encode(states.reduced_momentum), route.to_kernel(states.canonical_chart)
     poses = matrices_of(states)
     momenta, charts, ahead = route.step_each((r, cayley, poses), cayley, principal_only=True)
@@ -425,18 +427,6 @@ def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     gaps = _largest(back + momenta) / _largest(momenta)
     distances = np.maximum(_largest(charts_back + cayley) / _largest(cayley), gaps)
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
-
-
-def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return them for steps back from the opposite momentum."""
-    r = states.reduced_momentum
-    after, there, ahead = route.whole_steps(r, step_poses(states))
-    good = ahead == Outcome.successful
-    back, _, behind = route.whole_steps(-after[good], there[good])
-    distances = np.full(len(r), np.nan)
-    far = _largest(back + r[good]) / _largest(r[good])
-    distances[good] = np.where(behind == Outcome.successful, far, np.inf)
-    return distances
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:

@@ -24,6 +24,8 @@ from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
+When = tuple[float, int, float]
+"""The time, the number of the step and the fraction of it."""
 _OF_SINGLE = "name needs_pose system time_step scale encode decode to_kernel from_kernel encode_poses decode_poses"
 """Properties that are those of the route inside."""
 
@@ -134,9 +136,15 @@ class ForcedRoute(AbstractForcedRoute):
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
-        has_function = forced.needs_function or exact_terms(forced)
-        half = half_drive(free, forced, self.faults) if has_function else half_kick(free, forced)
-        return kernels.ForcedBody(free.body, half)
+        kick, along = _linear_part(free, forced)
+        if forced.needs_function or exact_terms(forced):
+            return kernels.ForcedBody(free.body, half_drive(free, forced, kick, along, self.faults))
+        weight, arms = kick.weight, kick.arms
+        if len(weight):
+            arms = arms @ kernel_frame(free, forced).T
+        if free.is_scalar and forced.group == SE(2):
+            weight, arms = weight[:2], arms[:, :2]
+        return kernels.ForcedBody(free.body, kick._replace(weight=plain(weight), arms=plain(arms)))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -184,20 +192,8 @@ class FunctionRoute(AbstractForcedRoute):
         return self.kick(m[None], pose[None], (2 * half * node, step), half, self.faults)[0]
 
 
-def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
-    """Return half the impulse of a step in the units and axes of a kernel."""
-    kick, _ = _linear_part(free, forced)
-    weight, arms = kick.weight, kick.arms
-    if len(weight):
-        arms = arms @ kernel_frame(free, forced).T
-    if free.is_scalar and forced.group == SE(2):
-        weight, arms = weight[:2], arms[:, :2]
-    return kick._replace(weight=plain(weight), arms=plain(arms))
-
-
-def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
+def half_drive(free: Any, forced: Forced, kick: kernels.Kick, along: np.ndarray, faults: Any) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are evaluated before a run."""
-    kick, along = _linear_part(free, forced)
     exact = exact_terms(forced)
     has = forced.function is not None or bool(exact), forced.own_potential is not None
     moves, weights = forced.differences
@@ -276,8 +272,22 @@ def _check_compiled(forced: Forced) -> None:
 
 
 def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.Kick, Float[np.ndarray, "dim k"]]:
-    """Return what is linear, with the weight in the user's frame, and the momenta of body covectors."""
-    keep, along = _half_step(free, forced)
+    """Return what is linear, with the weight in the user's frame, and the momenta of body covectors.
+
+    Of friction it is what half a step leaves of the kernel's momenta.
+    """
+    S, half, keep = np.asarray(forced.constraint_subspace), float(free.time_step) / 2, np.zeros((0, 0))
+    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
+    if forced.friction is not None and free.is_scalar:
+        rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
+        C = rows @ forced.friction.matrix @ rows.T
+        keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
+        along = rows.T @ (scale * push).T
+    else:
+        left, push, _ = forced.propagator(S.T, half)
+        along = S.T @ push.T @ to_kernel
+        if forced.friction is not None:
+            keep = np.linalg.solve(to_kernel, left.T @ to_kernel).T
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
@@ -289,20 +299,6 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
 def sum_products(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the sum of outer products in their order, as by the kernel of a page."""
     return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
-
-
-def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray, Float[np.ndarray, "dim k"]]:
-    """Return what friction leaves of the kernel's momenta in half a step, and the momenta of body covectors."""
-    S, half = np.asarray(forced.constraint_subspace), float(free.time_step) / 2
-    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
-    if forced.friction is not None and free.is_scalar:
-        rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
-        C = rows @ forced.friction.matrix @ rows.T
-        keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
-        return keep, rows.T @ (scale * push).T
-    keep, push, _ = forced.propagator(S.T, half)
-    remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
-    return remainder, S.T @ push.T @ to_kernel
 
 
 def velocities_of(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "dim k"]:
@@ -365,18 +361,16 @@ class BalancedRoute(AbstractForcedRoute):
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         k = len(m)
-        code, state = self.after(np.array(m), np.array(pose), time, step, fraction)
+        code, state = self.after(np.array(m), np.array(pose), (time, step, fraction))
         if code != 0:
             return None
         after, place = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
-        _, ahead = self.after(after, place, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
+        _, ahead = self.after(after, place, (time + fraction * float(self.free.time_step), step + int(fraction), 1.0))
         return after, self.runs.chart_of(self.body, ahead), place
 
-    def after(
-        self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float, force: Any = None
-    ) -> tuple[int, np.ndarray]:
+    def after(self, m: np.ndarray, pose: np.ndarray, when: When, force: Any = None) -> tuple[int, np.ndarray]:
         """Return the outcome of a fraction of a step, and the kernel's state after it; a constant force may act too."""
-        half = cast(kernels.Balanced, self.body.kick)
+        half, (time, step, fraction) = cast(kernels.Balanced, self.body.kick), when
         rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
         if force is not None:
             rows = rows + half.c.along @ force

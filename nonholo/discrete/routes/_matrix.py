@@ -12,8 +12,7 @@ Reference: docs/theory/general-step.md.
 
 import dataclasses
 import functools
-from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -22,7 +21,6 @@ from nonholo.base.numerics import product_and_remainder
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Variety, forbidden_matrices, free_rows
 from nonholo.discrete.routes._base import AbstractCompiledRoute, plain
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, System, inertia_from_mass_tensor
 
 _SINES = np.linspace(0.0, 1.0, 401)[1:-1]  # of the largest angle in the ball
@@ -69,7 +67,10 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     own_tensor = system.homogeneous_mass_tensor * np.outer(shrink, shrink)
     # a power of 2 changes no digit, and one of 2^32 no pivot for a body of ordinary mass, whose bits stay
     mass = float(np.exp2(_BITS * np.round(np.log2(np.abs(own_tensor).max(initial=1e-300)) / _BITS)))
-    tensor, directions, form, inverse_form = _in_form(group, own_tensor / mass, directions)
+    tensor, form, inverse_form = own_tensor / mass, np.zeros((0, 0)), np.zeros((0, 0))
+    if group.form is not None:  # J G^-1 and G D_i
+        form, inverse_form = group.form, np.linalg.inv(group.form)
+        tensor, directions = tensor @ inverse_form, form @ directions
     spatial = system.is_spatial
     pairings, remainders = product_and_remainder(directions, tensor)
     radius, level = (0.0, 0.0) if spatial else _certain_ball(system, own_tensor, unit, mass)
@@ -94,14 +95,6 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     return body, mass * unit**2
 
 
-def _in_form(group: AbstractMatrixGroup, tensor: Any, directions: Any) -> tuple[Any, ...]:
-    """Return J G^-1, G D_i, G and its inverse; J, D_i and empty matrices where there is no form."""
-    if group.form is None:
-        return tensor, directions, np.zeros((0, 0)), np.zeros((0, 0))
-    inverse = np.linalg.inv(group.form)
-    return tensor @ inverse, group.form @ directions, group.form, inverse
-
-
 def _completion(forbidden: Float[np.ndarray, "s N N"], directions: Float[np.ndarray, "k N N"]) -> np.ndarray:
     """Return what rounded annihilators lack to vanish on the directions, as they are stored, with twice the digits."""
     A, D = (x.reshape(len(x), directions.shape[1] ** 2) for x in (forbidden, directions))
@@ -117,9 +110,7 @@ def _certain_ball(system: AbstractSystem, tensor: np.ndarray, unit: float, mass:
     """
     if system.group.form is not None:
         return 0.0, -np.inf
-    slope, least = _stiffness(system, tensor, unit)
-    cosine = np.sqrt(1 - _SINES**2)
-    lipschitz = slope(_SINES, cosine)
+    lipschitz, least = _stiffness(system, tensor, unit)
     reach = np.where(lipschitz < 1, (1 - lipschitz) * _SINES, 0.0)
     best = int(np.argmax(reach))
     size = least / mass * _MARGIN
@@ -134,8 +125,8 @@ def _length_unit(system: AbstractSystem) -> float:
     return float(np.sqrt(np.trace(tensor[:n, :n]) / tensor[n, n]))
 
 
-def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple[Callable[..., np.ndarray], float]:
-    r"""Return the Lipschitz constant of $\phi$, by sine and cosine of the largest angle, and the least inertia.
+def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple[np.ndarray, float]:
+    r"""Return the Lipschitz constants of $\phi$, by the sine of the largest angle, and the least inertia.
 
     $\phi(E) = \mathrm{tr}(E\,\mathbb{J}\,S^T)$ with $S = (W + W^{-1})/2 - I$; on SO(n) a multiple of the identity in
     $\mathbb{J}$ does not count.
@@ -146,16 +137,11 @@ def _stiffness(system: AbstractSystem, tensor: np.ndarray, unit: float) -> tuple
     orthonormal = np.linalg.qr(rows.T)[0].T
     inertia = orthonormal @ inertia_from_mass_tensor(system.group, tensor) @ orthonormal.T
     least = float(np.linalg.eigvalsh(inertia)[0]) if len(inertia) else 1.0
-    spread = np.linalg.eigvalsh(tensor)
+    s, c, spread = _SINES, np.sqrt(1 - _SINES**2), np.linalg.eigvalsh(tensor)
     if n == len(tensor):
-        return (lambda s, c: (spread[-1] - spread[0]) / least * s / c), least
+        return (spread[-1] - spread[0]) / least * s / c, least
     if spread[0] < -1e-12 * spread[-1]:
-        return (lambda s, _: np.full_like(s, np.inf)), least
-    ratio = np.sqrt(spread[-1] / least)
-
-    def of_motions(s: np.ndarray, c: np.ndarray) -> np.ndarray:
-        half = s / (1 + c)
-        shear = (1 + half**2) / (2 * c) * s
-        return ratio * np.sqrt(2 * (s / c) ** 2 + shear**2 + half**2)
-
-    return of_motions, least
+        return np.full_like(s, np.inf), least
+    half = s / (1 + c)
+    shear = (1 + half**2) / (2 * c) * s
+    return np.sqrt(spread[-1] / least) * np.sqrt(2 * (s / c) ** 2 + shear**2 + half**2), least

@@ -20,7 +20,7 @@ from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Bool, Float
 from nonholo.discrete._scheme import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
-from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
+from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute, When
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
 from nonholo.systems.forces import Widened, friction, update_slope
 
@@ -32,8 +32,6 @@ _STRETCH = 512  # steps that hold, taken at once
 
 Here = tuple[np.ndarray, np.ndarray]
 """Canonical momenta and a pose."""
-When = tuple[float, int, float]
-"""The time, the number of the step and the fraction of it."""
 
 
 class Beginning(NamedTuple):
@@ -189,8 +187,7 @@ class SlipRoute(AbstractForcedRoute):
         """Take a fraction of a step that slides under an impulse along the rows."""
         route, (r, pose), part = self.free, now, when[2] * float(self.holding.time_step)
         own_pose, k = route.encode_poses(pose), len(r)
-        force = self.body.rows.T @ impulse / part
-        code, state = route.after(route.encode(r), own_pose, *when, force)
+        code, state = route.after(route.encode(r), own_pose, when, self.body.rows.T @ impulse / part)
         chart = route.from_kernel(route.runs.chart_of(route.body, state))
         if code != 0:
             return Beginning(code, chart)
@@ -279,11 +276,10 @@ class SlipStepper(AbstractBodyStepper):
 
     def _stretch(self, state: State, most: int) -> tuple[Rows, int]:
         """Take steps that hold, or one from a new beginning; return their rows and the outcome."""
-        (r, pose, (number, since)), route = self._own(state), self.route
+        r, pose, (number, since), _ = self._own(state)
         if since >= 0:
             return self._hold(state, most)
-        h = float(self.motion.time_step)
-        beginning = route.begin(r.copy(), pose.copy(), number * h, int(number))
+        beginning = self.route.begin(r.copy(), pose.copy(), number * float(self.motion.time_step), int(number))
         if beginning.code != 0:
             return tuple(np.empty((0, size)) for size in self.sizes), beginning.code
         row = self._row(r, pose, beginning)
@@ -292,7 +288,7 @@ class SlipStepper(AbstractBodyStepper):
 
     def _hold(self, state: State, most: int) -> tuple[Rows, int]:
         """Take steps of the kernel that holds, up to one whose rows yield."""
-        (r, pose, places), hold, kernel = self._own(state), self.route.hold, self._kernel(state)
+        (r, pose, places, kernel), hold = self._own(state), self.route.hold
         number, since, run = int(places[0]), int(places[1]), kernel.copy()
         rows = tuple(np.empty((most, size)) for size in hold.sizes)
         good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
@@ -318,18 +314,15 @@ class SlipStepper(AbstractBodyStepper):
 
     def _keep(self, state: State, beginning: Beginning, number: int) -> None:
         """Write what follows the step that begins with a number."""
-        r, pose, places = self._own(state)
+        r, pose, places, kernel = self._own(state)
         places[:] = number + 1, -1 if beginning.kernel is None else number
         if beginning.kernel is not None:
-            self._kernel(state)[:] = beginning.kernel
+            kernel[:] = beginning.kernel
         elif beginning.after is not None:
             r[:], pose[:] = beginning.after
 
-    def _own(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _own(self, state: State) -> tuple[np.ndarray, ...]:
+        """Return momenta and pose of the next step, its number and that at which the kernel began, and its state."""
         k, _, size = self.sizes
-        begin = self.width
-        return state[begin : begin + k], state[begin + k :][:size], state[begin + k + size :][:2]
-
-    def _kernel(self, state: State) -> np.ndarray:
-        k, _, size = self.sizes
-        return state[self.width + k + size + 2 :]
+        own = state[self.width :]
+        return own[:k], own[k : k + size], own[k + size :][:2], own[k + size + 2 :]
