@@ -4,6 +4,7 @@ An orbit is followed backwards and forwards until its velocity has settled. Theo
 """
 
 import dataclasses
+import functools
 import math
 from typing import Any, NamedTuple, cast
 
@@ -25,9 +26,6 @@ from nonholo.systems import AbstractLLSystem, NormalForm, one_start, refuse_forc
 _ROUNDING = 8 * np.finfo(np.float64).eps
 _SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
 _LONGEST = 1_000_000  # steps
-
-Ends = tuple[Orbit, Orbit]
-"""The orbit run backwards and forwards."""
 
 
 class Approach(NamedTuple):
@@ -72,42 +70,30 @@ def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
     return constant, float(orbit.energy[0]) - float(own)
 
 
-def both_ends(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> Ends:
+def both_ends(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> tuple[Orbit, Orbit]:
     """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`.
 
-    The first orbit runs backwards, against time, from one step after the first state on.
+    The first orbit runs backwards, against time, from one step after the first state on. A map runs backwards from the
+    inverse displacement: it is reversible. A composition goes back from the opposite momentum.
     """
-    spectrum, decay = limits.spectrum, _SETTLED - float(np.log(limits.beside))
-    if isinstance(orbit.motion, Discretization):
-        return _discrete(orbit, orbit.motion, spectrum, decay, where)
-    start = {"momentum": orbit.restricted_momentum[0], "configuration": _pose(orbit)}
-    time = decay / float(np.abs(spectrum.rates).min())
-    method = "closed_form" if orbit.system.group.dim == 3 else None
-    ends = (flow(orbit.system, **start, times=(0.0, t), rtol=1e-12, atol=1e-13, method=method) for t in (-time, time))
-    return next(ends), next(ends)
-
-
-def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float, where: str) -> Ends:
-    """Run the map forwards, and backwards from the inverse displacement: the map is reversible.
-
-    A composition goes back from the opposite momentum.
-    """
-    slowest = float(np.abs(np.asarray(spectrum.multipliers)).max())
+    discrete, group, decay = orbit.motion, orbit.system.group, _SETTLED - float(np.log(limits.beside))
+    g = group.identity if orbit.canonical_pose is None else orbit.configuration[0]
+    start = {"momentum": orbit.restricted_momentum[0], "configuration": g}
+    if not isinstance(discrete, Discretization):
+        time = decay / float(np.abs(limits.spectrum.rates).min())
+        run = functools.partial(flow, orbit.system, **start, rtol=1e-12, atol=1e-13)
+        method = "closed_form" if group.dim == 3 else None
+        return run(times=(0.0, -time), method=method), run(times=(0.0, time), method=method)
+    slowest = float(np.abs(np.asarray(limits.spectrum.multipliers)).max())
     step_count = decay / -np.log(slowest) if slowest < 1 else np.inf
     if step_count > _LONGEST:
         remedy = "Take a longer time step, or the limits of the flow."
         got = f"a slowest multiplier of {slowest:.17g}"
         raise error(where, f"settle within {_LONGEST} steps", got, remedy)
-    group, W, g = discrete.system.group, orbit.displacement[0], _pose(orbit)
-    steps = int(np.ceil(step_count)) + 1
-    last = simulate(discrete, momentum=orbit.restricted_momentum[0], configuration=g, steps=steps)
-    is_composition = discrete.order > 2
-    back = {"momentum": -last.restricted_momentum[1]} if is_composition else {"displacement": group.inverse(W)}
+    W, steps = orbit.displacement[0], int(np.ceil(step_count)) + 1
+    last = simulate(discrete, **start, steps=steps)
+    back = {"displacement": group.inverse(W)} if discrete.order == 2 else {"momentum": -last.restricted_momentum[1]}
     return simulate(discrete, **back, configuration=g @ W, steps=steps), last
-
-
-def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:
-    return orbit.system.group.identity if orbit.canonical_pose is None else orbit.configuration[0]
 
 
 _SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
@@ -172,28 +158,19 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
         >>> asymptotics(top).axis_after
         array([-0., -1., -0.])
     """
-    orbit = subject if isinstance(subject, Orbit) else None
-    system = subject if orbit is None else orbit.system
-    refuse_forces("asymptotics(subject=...)", system)
-    if isinstance(subject, Orbit) and subject.has_impacts.any():
-        raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Pass the system.")
+    where, orbit = "asymptotics(subject=...)", subject if isinstance(subject, Orbit) else None
+    system: Any = subject if orbit is None else orbit.system
+    refuse_forces(where, system)
+    if orbit is not None and orbit.has_impacts.any():
+        raise error(where, "be an orbit without impacts", "some", "Pass the system.")
     form = getattr(system, "normal_form", None)
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
-        raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
-    if orbit is None:
-        return _of_system(cast("AbstractLLSystem", system), form)
-    if len(orbit) == 0:
-        raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
-    return _of_orbit(form, orbit)
-
-
-def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
-    r"""Return the total turn of sleighs along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
-    return np.pi * np.sqrt(1 + inertia / mass / a / a)
-
-
-def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
+        raise error(where, "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
+    if orbit is not None:
+        if len(orbit) == 0:
+            raise error(where, "have at least one state", "none", "See the orbit's outcome.")
+        return _of_orbit(form, orbit)
     attracting = system.equilibria().attracting
     if attracting is None:
         return Asymptotics()
@@ -201,6 +178,11 @@ def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
         turn = float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
         return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
     return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
+
+
+def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
+    r"""Return the total turn of sleighs along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    return np.pi * np.sqrt(1 + inertia / mass / a / a)
 
 
 def _turns_once(form: NormalForm) -> bool:
@@ -227,17 +209,10 @@ def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
         turn = _heading_turn(form, orbit, limits)
         forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
         return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
-    axes = _axis(form, before), _axis(form, after)
-    in_space = _in_space(orbit, axes, limits)
-    return Asymptotics(before, after, *axes, *in_space, persists=persists)
-
-
-def _in_space(orbit: Orbit, axes: tuple, limits: Approach) -> tuple:
-    """Return both axes as seen in space; None without axes or poses, or where the orbit is not followed to its ends."""
+    axes: Any = _axis(form, before), _axis(form, after)
     ends = None if axes[1] is None or orbit.canonical_pose is None else _ends(orbit, limits)
-    if ends is None:
-        return None, None
-    return tuple(end.configuration[-1] @ axis for end, axis in zip(ends, axes, strict=True))
+    in_space = () if ends is None else (end.configuration[-1] @ axis for end, axis in zip(ends, axes, strict=True))
+    return Asymptotics(before, after, *axes, *in_space, persists=persists)
 
 
 def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
@@ -267,7 +242,7 @@ def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
     return form.is_planar and energy < single_valued_region(discrete).principal_energy
 
 
-def _ends(orbit: Orbit, limits: Approach) -> Ends | None:
+def _ends(orbit: Orbit, limits: Approach) -> tuple[Orbit, Orbit] | None:
     """Return both ends of an orbit; None where its principal branch ends, or is not the one that the orbit took."""
     try:
         ends = both_ends(orbit, limits)
@@ -348,7 +323,12 @@ def heteroclinic(
         True
     """
     where = "heteroclinic(discrete=...)"
-    system = _top_or_sleigh(where, as_discretization(where, discrete))
+    system = cast("AbstractLLSystem", as_discretization(where, discrete).system)
+    if system.normal_form is None or not discrete.conserves_energy:
+        remedy = "Discretize a SuslovTop or a sleigh with the defaults."
+        raise error(where, "be a top or a sleigh whose map keeps energy", shown(discrete), remedy)
+    if system.equilibria().attracting is None:
+        raise error(where, "have attracting equilibria", f"the balanced {system!r}", "Its velocity is constant.")
     one_start("heteroclinic", energy=energy, momentum=momentum, displacement=displacement)
     sign = choice("heteroclinic(side=...)", side, (1, -1))
     if energy is not None:
@@ -376,16 +356,6 @@ def both_ways(where: str, point: Orbit) -> Orbit:
         cayley=np.concatenate([-past.canonical_chart[earlier], future.canonical_chart]),
         canonical_pose=np.concatenate([np.asarray(past.canonical_pose)[later], np.asarray(future.canonical_pose)]),
     )
-
-
-def _top_or_sleigh(where: str, discrete: Discretization) -> AbstractLLSystem:
-    system = cast("AbstractLLSystem", discrete.system)
-    if system.normal_form is None or not discrete.conserves_energy:
-        remedy = "Discretize a SuslovTop or a sleigh with the defaults."
-        raise error(where, "be a top or a sleigh whose map keeps energy", shown(discrete), remedy)
-    if system.equilibria().attracting is None:
-        raise error(where, "have attracting equilibria", f"the balanced {system!r}", "Its velocity is constant.")
-    return system
 
 
 def middle(system: AbstractLLSystem, energy: Any, side: int) -> Float[np.ndarray, "2"]:

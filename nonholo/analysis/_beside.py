@@ -33,44 +33,40 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
     """Return the changes beside a state of a system on a group, or of its map, and what gives states beside it."""
     is_map = isinstance(subject, Discretization)
     system: Any = subject.system if is_map else subject
-    _refuse(f"{owner}(system=...)", system)
-    refuse_wide(system.group)
-    still = np.zeros(system.group.dim)
-    start = Start.of(owner, configuration, body_velocity=still if velocity is None else velocity)
-    g = start.pose(system.group)
+    group, where = system.group, f"{owner}(system=...)"
+    refuse_slip(where, system)
+    if system.forces is not None and system.forces.table is not None:
+        got, remedy = "one force for each step", "Linearize it without the table."
+        raise error(where, "have forces that do not depend on time", got, remedy)
+    refuse_wide(group)
+    start = Start.of(owner, configuration, body_velocity=np.zeros(group.dim) if velocity is None else velocity)
+    g = start.pose(group)
     r = system.from_canonical(start.momentum(system, g))
-    poses, momenta = _by_steps(subject, g, r) if is_map else _by_flow(system, g, r)
-    rng, dim = np.random.default_rng(0), system.group.dim
+    rng, dim, count = np.random.default_rng(0), group.dim, len(_TIMES)
+    if is_map:
+        refuse_many_matrices("linearize(system=...)", subject, 6, "Linearize a smaller body.", derivatives=len(r))
+        orbit = simulate(subject, momentum=r, configuration=g, steps=count)
+        poses, momenta = orbit.configuration, orbit.restricted_momentum
+    else:  # a motion that is steady
+        poses = g @ group.exp(_TIMES[:, None] * _flowing(system)(np.float64(0), g, r)[0])
+        momenta = np.tile(r, (count, 1))
     xi, s = _SPREAD * rng.uniform(-1, 1, (_OTHERS, dim)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(r)))
-    count, times, units = len(_TIMES), np.append(_TIMES, np.zeros(_OTHERS)), np.ones(len(r))
-    poses = np.concatenate([poses[:count], g @ system.group.exp(xi)])
+    poses = np.concatenate([poses[:count], g @ group.exp(xi)])
     others = r + (np.abs(r).max() or 1.0) * s
+    times = np.append(_TIMES, np.zeros(_OTHERS))
     change, slope = _slopes(subject, times, poses, np.concatenate([momenta[:count], others]))
     if is_map:  # where forces know the times of steps
         change = change.copy()
         change[:count, dim:] = np.diff(momenta, axis=0)
     rows = np.zeros((len(slope), 0, slope.shape[-1]))
     names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
-    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, True)
-    return local, functools.partial(_pose_beside, system, g, r)
 
+    def beside(xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
+        after = g @ group.exp(xi)
+        return after, _flowing(system)(np.float64(0), after, r + s)[0]
 
-def _pose_beside(system: Any, g: Array, r: Array, xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
-    after = g @ system.group.exp(xi)
-    return after, _flowing(system)(np.float64(0), after, r + s)[0]
-
-
-def _by_flow(system: Any, g: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return poses and momenta at later times of a motion that is steady."""
-    velocity, _ = _flowing(system)(np.float64(0), g, r)
-    return g @ system.group.exp(_TIMES[:, None] * velocity), np.tile(r, (len(_TIMES), 1))
-
-
-def _by_steps(discrete: Discretization, g: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return poses and momenta after steps."""
-    refuse_many_matrices("linearize(system=...)", discrete, 6, "Linearize a smaller body.", derivatives=len(r))
-    orbit = simulate(discrete, momentum=r, configuration=g, steps=len(_TIMES))
-    return orbit.configuration, orbit.restricted_momentum
+    state = np.append(np.zeros(dim), r)
+    return Local(names, dim, state, change, slope, rows, _TIMES, np.ones(len(r)), True), beside
 
 
 def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
@@ -103,13 +99,6 @@ def along_flow(orbit: Any) -> Float[np.ndarray, "L d d"]:
     return maps
 
 
-def _refuse(where: str, system: Any) -> None:
-    refuse_slip(where, system)
-    if system.forces is not None and system.forces.table is not None:
-        got, remedy = "one force for each step", "Linearize it without the table."
-        raise error(where, "have forces that do not depend on time", got, remedy)
-
-
 def _flowing(system: Any) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
     """Return the function that takes time, pose and momentum to velocity and rate."""
     field, group, k = vector_field(system), system.group, system.rank
@@ -121,28 +110,23 @@ def _flowing(system: Any) -> Callable[[Array, Array, Array], tuple[Array, Array]
     return move
 
 
-def _stepping(discrete: Discretization) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
-    """Return the function that takes time, pose and momentum to the next pose and the change of momentum."""
-
-    def move(_: Array, g: Array, r: Array) -> tuple[Array, Array]:
-        pair = simulate(discrete, momentum=r, configuration=g, steps=1, throw=False)
-        return pair.configuration[-1], pair.restricted_momentum[-1] - r
-
-    return move
-
-
 def _beside(subject: Any, time: Array, g: Array, r: Array) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
     """Return the change of a state as a function of what it is beside one, and where it is that state."""
-    is_map = isinstance(subject, Discretization)
-    move = _stepping(subject) if is_map else _flowing(subject)
-    group, (first, _), xp = (subject.system if is_map else subject).group, move(time, g, r), g.__array_namespace__()
+    is_map, xp = isinstance(subject, Discretization), g.__array_namespace__()
+    group = (subject.system if is_map else subject).group
+
+    def step(_: Array, g: Array, r: Array) -> tuple[Array, Array]:  # to the next pose, and the change of momentum
+        pair = simulate(subject, momentum=r, configuration=g, steps=1, throw=False)
+        return pair.configuration[-1], pair.restricted_momentum[-1] - r
+
+    move = step if is_map else _flowing(subject)
+    first, _ = move(time, g, r)
 
     def change(z: Array) -> Array:
         xi, s = z[: group.dim], z[group.dim :]
         there, rate = move(time, g @ group.exp(xi), s)
-        if is_map:
-            return xp.concatenate([group.log(group.inverse(first) @ there) - xi, rate])
-        return xp.concatenate([there - first + group.bracket(xi, first), rate])
+        way = group.log(group.inverse(first) @ there) - xi if is_map else there - first + group.bracket(xi, first)
+        return xp.concatenate([way, rate])
 
     return change, xp.concatenate([xp.zeros(group.dim), r])
 
@@ -180,14 +164,13 @@ def _by_jax(system: Any, *states: Array) -> tuple[Array, Array]:
 
 def _by_differences(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return what a function of the user's leads to, which is not traced."""
-    pairs = [_beside(subject, *state) for state in zip(*states, strict=True)]
-    return np.stack([change(z) for change, z in pairs]), np.stack([_differences(*pair) for pair in pairs])
-
-
-def _differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) -> Float[np.ndarray, "m m"]:
-    offsets, weights = central_differences(len(z))
-    ends = [[function(z + to) - function(z + fro) for to, fro in along] for along in offsets]
-    return np.einsum("iwj,w->ji", np.array(ends), weights)
+    changes, slopes = [], []
+    for change, z in (_beside(subject, *state) for state in zip(*states, strict=True)):
+        offsets, weights = central_differences(len(z))
+        ends = [[change(z + to) - change(z + fro) for to, fro in along] for along in offsets]
+        changes.append(change(z))
+        slopes.append(np.einsum("iwj,w->ji", np.array(ends), weights))
+    return np.stack(changes), np.stack(slopes)
 
 
 def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
@@ -200,27 +183,23 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     size = n + motion.system.is_driven
     state = np.append(x if coordinates else np.zeros(size), v)
     reach = reach_of(state[:n], units)
-    speed = units * np.abs(v / units).max() if np.any(v) else reach * _rate(steady[1][0]) / (motion.time_step or 1.0)
+    slope = steady[1][0]
+    fastest = np.abs(np.linalg.eigvals(slope)).max() if np.isfinite(slope).all() else 0.0  # of what moves beside rest
+    speed = units * np.abs(v / units).max() if np.any(v) else reach * (fastest or 1.0) / (motion.time_step or 1.0)
     xi = _SPREAD * np.append(reach, np.ones(size - n)) * rng.uniform(-1, 1, (_OTHERS, size))
     others = tangents.beside(motion, x, v, xi, _SPREAD * speed * rng.uniform(-1, 1, (_OTHERS, n)))
     pairs = zip(steady, tangents.slopes(motion, *others), strict=True)
     change, slope, rows = (np.concatenate(pair) for pair in pairs)
     names = _names_of_coordinates(motion.system)
     times = np.append(0.0, tangents.LATER)
-    local = Local(names, size, state, change, slope, rows, times, units, not coordinates)
-    return local, functools.partial(_coordinates_beside, motion, x, v)
 
+    def beside(xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
+        places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
+        if motion.time_step is not None:
+            velocities = tangents.departing(motion, places, velocities)
+        return places[0][: len(places[0]) - motion.system.is_driven], velocities[0]
 
-def _rate(slope: Float[np.ndarray, "m m"]) -> float:
-    """Return the fastest rate of the motion beside a state; one where there is none."""
-    return float(np.abs(np.linalg.eigvals(slope)).max()) or 1.0 if np.isfinite(slope).all() else 1.0
-
-
-def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
-    places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
-    if motion.time_step is not None:
-        velocities = tangents.departing(motion, places, velocities)
-    return places[0][:-1] if motion.system.is_driven else places[0], velocities[0]
+    return Local(names, size, state, change, slope, rows, times, units, not coordinates), beside
 
 
 def _names_of_coordinates(system: Any) -> tuple[str, ...]:

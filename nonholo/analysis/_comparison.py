@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, overload
 import numpy as np
 
 from nonholo.base.checks import error, instance, shown
-from nonholo.base.types import Float, Int
+from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import have_same_rows
 
@@ -193,9 +193,11 @@ def compare(orbit: AbstractOrbit | Sequence[AbstractOrbit], flow: AbstractOrbit)
 def _compare_two(orbit: AbstractOrbit, flow: AbstractOrbit) -> Comparison:
     _check_alike(orbit, flow)
     (orbit, i), (other, j) = _common_rows(orbit, flow)
-    has_poses = orbit.has_poses and other.has_poses
+    has_poses, pose = orbit.has_poses and other.has_poses, None
     momenta = orbit.restricted_momentum[i] - other.restricted_momentum[j]
-    pose = _distance(orbit.configuration[i], other.configuration[j]) if has_poses else None
+    if has_poses:  # coordinates, or matrices with the displacement between them
+        g, off = orbit.configuration[i], other.configuration[j] - orbit.configuration[i]
+        pose = np.linalg.norm(off if g.ndim == 2 else np.linalg.solve(g, off), axis=tuple(range(1, g.ndim)))
     has_energy = has_poses or not getattr(orbit.system, "is_spatial", False)
     energy = orbit.energy[i] - other.energy[j] if has_energy else None
     sizes = Errors(
@@ -204,13 +206,6 @@ def _compare_two(orbit: AbstractOrbit, flow: AbstractOrbit) -> Comparison:
         float(np.abs(other.energy[j]).max()) if has_energy else None,
     )
     return Comparison(orbit.time[i], np.linalg.norm(momenta, axis=1), pose, energy, sizes, orbit.time_step)
-
-
-def _distance(configuration: Float[np.ndarray, "K ..."], other: Float[np.ndarray, "K ..."]) -> Float[np.ndarray, "K"]:
-    """Return the distances of coordinates, or of matrices from each other by the displacement between them."""
-    if configuration.ndim == 2:
-        return np.linalg.norm(configuration - other, axis=1)
-    return np.linalg.norm(np.linalg.solve(configuration, other - configuration), axis=(1, 2))
 
 
 def _check_alike(orbit: AbstractOrbit, flow: AbstractOrbit) -> None:
@@ -236,21 +231,15 @@ def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[tuple[Abstr
             _check_common(rows)
             rest = other.at(np.clip(one.time[rows], first, last)), np.arange(len(rows))
             return ((one, rows), rest) if one is orbit else (rest, (one, rows))
-    rows, others = _common(orbit.time, flow.time)
-    _check_common(rows)
-    return (orbit, rows), (flow, others)
-
-
-def _common(first: np.ndarray, second: np.ndarray) -> tuple[Int[np.ndarray, "C"], Int[np.ndarray, "C"]]:
-    """Return the rows at which times are equal up to rounding."""
-    if not len(first) or not len(second):
-        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+    first, second = orbit.time, flow.time
+    _check_common(first if len(second) else second)  # an orbit may have no states
     order = np.argsort(second, kind="stable")
     after = np.searchsorted(second, first, sorter=order).clip(1, max(1, len(second) - 1))
     around = order[np.stack([after - 1, np.minimum(after, len(second) - 1)])]
     nearest = np.take_along_axis(around, np.abs(second[around] - first).argmin(axis=0)[None], axis=0)[0]
     rows = np.flatnonzero(np.abs(second[nearest] - first) <= min(_nearness(first), _nearness(second)))
-    return rows, nearest[rows]
+    _check_common(rows)
+    return (orbit, rows), (flow, nearest[rows])
 
 
 def _nearness(time: np.ndarray) -> float:

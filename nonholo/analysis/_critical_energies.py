@@ -124,11 +124,16 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         >>> critical_energies(nh.discretize(top, 0.5)).fold
         12.0
     """
-    form = _top_form("critical_energies(discrete=...)", discrete)
+    where, remedy = "critical_energies(discrete=...)", "Pass `discretize(SuslovTop(J), time_step)`."
+    form, step = as_discretization(where, discrete).system.normal_form, float(discrete.time_step)
+    if form is None or form.is_sleigh:
+        if getattr(form, "is_planar", False):
+            remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
+        raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
+    check_conserves_energy(where, discrete, "conserve the energy")
     if not form.is_planar:
-        return _in_more_dimensions(form, float(discrete.time_step))
-    land = landscape(form)
-    unit = 2 / float(discrete.time_step) ** 2
+        return _in_more_dimensions(form, step)
+    land, unit = landscape(form), 2 / step**2
     off = _off_equator(land, unit)
     points = _on_equator(land, unit) if land.sharpness > 0 else []
     by_kind = {p.kind: p.energy for p in off}
@@ -144,16 +149,6 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         regular=land.is_regular,
         points=(CriticalPoint(0.0, "minimum", False, True, np.zeros(2)), *sorted(points, key=lambda p: p.energy)),
     )
-
-
-def _top_form(where: str, discrete: Any) -> NormalForm:
-    form, remedy = as_discretization(where, discrete).system.normal_form, "Pass `discretize(SuslovTop(J), time_step)`."
-    if form is None or form.is_sleigh:
-        if form is not None and form.is_planar:
-            remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
-        raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
-    check_conserves_energy(where, discrete, "conserve the energy")
-    return form
 
 
 def _in_more_dimensions(form: NormalForm, step: float) -> CriticalEnergies:
@@ -173,9 +168,9 @@ def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) 
     if saddle is not None and 3 * land.sharpness <= 1:
         return saddle
     fold = unit * fold_energy(form.stiffness_matrix, np.asarray(form.coupling))
-    if saddle is None or not land.is_regular:
-        return fold
-    return fold if fold < (1 - _AT_SADDLE) * saddle else saddle
+    if saddle is not None and land.is_regular and fold >= (1 - _AT_SADDLE) * saddle:
+        return saddle
+    return fold
 
 
 def _off_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
@@ -238,7 +233,17 @@ def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float
         x = np.maximum(fold, np.sqrt(np.maximum(1 - 2 * s**2, 0.0)))
         return b * (x * x + s**2) / (1 + x * x) ** 2
 
-    angles = _angles(B, c, root)
+    # angles of B^(1/2) u, sorted: uniform in it and in u, dense around both saddles, which have the least b/kappa
+    across = np.array([-c[1], c[0]])
+    kappa = np.eye(2) - np.outer(across, across) / np.linalg.det(B)
+    top = scipy.linalg.eigh(root @ kappa @ root)[1][:, -1]
+    uniform = np.linspace(0.0, 2 * np.pi, _UNIFORM, endpoint=False)
+    directions = np.linalg.solve(root, np.stack([np.cos(uniform), np.sin(uniform)]))
+    near = np.geomspace(1e-7, 0.3, _NEAR_SADDLE)
+    saddle = np.arctan2(top[1], top[0]) + np.concatenate([-near, [0.0], near])
+    angles = np.concatenate([uniform, np.arctan2(directions[1], directions[0]), saddle, saddle + np.pi])
+    angles = np.unique(angles % (2 * np.pi))
+
     samples = least(angles)
     low = np.flatnonzero((samples <= np.roll(samples, 1)) & (samples <= np.roll(samples, -1)))
     ends = np.stack([np.roll(angles, 1)[low], np.roll(angles, -1)[low]], axis=1)
@@ -246,16 +251,3 @@ def fold_energy(B: Float[np.ndarray, "2 2"], c: Float[np.ndarray, "2"]) -> float
     search: Any = functools.partial(scipy.optimize.minimize_scalar, method="bounded", options={"xatol": 1e-12})
     minima = [search(lambda a: least(np.array([a]))[0], bounds=pair) for pair in ends]
     return min([float(samples.min()), *(float(minimum.fun) for minimum in minima)])
-
-
-def _angles(B: np.ndarray, c: np.ndarray, root: np.ndarray) -> Float[np.ndarray, "K"]:
-    r"""Return sorted angles of $B^{1/2}u$ to search: uniform in it and in u, dense around both saddles."""
-    across = np.array([-c[1], c[0]])
-    kappa = np.eye(2) - np.outer(across, across) / np.linalg.det(B)
-    top = scipy.linalg.eigh(root @ kappa @ root)[1][:, -1]  # the saddle has the least b/kappa
-    uniform = np.linspace(0.0, 2 * np.pi, _UNIFORM, endpoint=False)
-    directions = np.linalg.solve(root, np.stack([np.cos(uniform), np.sin(uniform)]))
-    near = np.geomspace(1e-7, 0.3, _NEAR_SADDLE)
-    saddle = np.arctan2(top[1], top[0]) + np.concatenate([-near, [0.0], near])
-    angles = np.concatenate([uniform, np.arctan2(directions[1], directions[0]), saddle, saddle + np.pi])
-    return np.unique(angles % (2 * np.pi))

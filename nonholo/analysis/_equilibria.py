@@ -17,7 +17,7 @@ from nonholo.base.results import result
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, as_discretization, momentum_slope, weights
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, Equilibria, NormalForm, refuse_fixed_in_space, refuse_forces
+from nonholo.systems import AbstractLLSystem, Equilibria, refuse_fixed_in_space, refuse_forces
 
 
 @result
@@ -127,7 +127,14 @@ def _spectrum(
     if form is None:
         rates = body.transverse_rates(velocity, rows)
         return EquilibriumSpectrum(rows, attracting, velocity, rates, None, others=others)
-    rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
+    w = np.linalg.solve(body.form_map.T, velocity @ np.linalg.pinv(body.constraint_subspace))
+    if form.arm != 0:
+        rates = np.sort(-form.mass * form.arm * w[-1] / form.moments)
+    else:
+        c = form.coupling
+        across = np.linalg.svd(c[None, :])[2][1:].T
+        turning = np.linalg.eigvalsh(across.T @ np.linalg.solve(form.stiffness_matrix, across))
+        rates = np.sort(-np.linalg.norm(w[: len(c)]) * np.linalg.norm(c) * turning)
     if discrete is None:
         return EquilibriumSpectrum(rows, attracting, velocity, rates, None)
     multipliers = _multipliers(discrete, velocity, rates)
@@ -167,18 +174,6 @@ def _checked_body(where: str, value: Any, remedy: str) -> AbstractLLSystem:
     if isinstance(value, Discretization):
         check_conserves_energy(where, value, "conserve the energy")
     return cast(AbstractLLSystem, body)
-
-
-def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarray, "j"]:
-    """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
-    form = cast("NormalForm", body.normal_form)
-    w = np.linalg.solve(body.form_map.T, w)
-    if form.arm != 0:  # not as of tops
-        return -form.mass * form.arm * w[-1] / form.moments
-    c = form.coupling
-    across = np.linalg.svd(c[None, :])[2][1:].T
-    turning = np.linalg.eigvalsh(across.T @ np.linalg.solve(form.stiffness_matrix, across))
-    return -np.linalg.norm(w[: len(c)]) * np.linalg.norm(c) * turning
 
 
 def _multipliers(discrete: Discretization, velocity: np.ndarray, rates: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ The integrals follow from linear algebra on the quadratic terms of the equations
 """
 
 import dataclasses
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome, as_table, result
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
@@ -184,73 +183,41 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
     remedy = "Pass a SuslovTop, an LLSystem, ..."
     instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system on a group", remedy)
     refuse_forces("conserved_momenta(system=...)", system)
-    return _right(system) if system.is_spatial else _left(system)
-
-
-def _left(system: AbstractSystem) -> ConservedMomenta:
-    algebra = _Algebra.of(system)
-    rows, inertia, everything = algebra.rows, algebra.inertia, np.eye(system.group.dim)
-    form = gyroscopic_form(inertia, algebra.brackets(rows, rows), rows)
-    coefficients = algebra.vanishing(form.reshape(len(rows) ** 2, len(rows)))
-    reactions = _reactions(inertia, rows, algebra.brackets(rows, everything))
-    return algebra.conserved(coefficients @ rows, algebra.largest_ideal(algebra.vanishing(reactions)))
-
-
-def _right(system: AbstractSystem) -> ConservedMomenta:
-    algebra, group, rng = _Algebra.of(system), system.group, np.random.default_rng(0)
-    rows, units, everything = algebra.rows, algebra.units, np.eye(group.dim)
-    brackets, rates, reactions = algebra.brackets(rows, everything), [], []
+    # in units of displacements, with orthonormal rows along the constraint
+    group, units, rng = system.group, system.displacement_units, np.random.default_rng(0)
+    rows, inertia = _span(system.constraint_subspace / units), system.inertia_operator * units * units[:, None]
+    brackets, largest = _brackets(system, rows, np.eye(group.dim)), np.abs(inertia).max()
+    if not system.is_spatial:
+        form = gyroscopic_form(inertia, _brackets(system, rows, rows), rows)
+        body = _vanishing(form.reshape(len(rows) ** 2, len(rows)), largest) @ rows
+        spatial = _largest_ideal(system, _vanishing(_reactions(inertia, rows, brackets), largest))
+        return ConservedMomenta(_span(body * units), _span(spatial * units))
+    rates, reactions = [], []
     for _ in range(group.dim + 1):
         back = group.adjoint(group.exp(units * rng.normal(size=group.dim))) * units / units[:, None]
-        spatial = back.T @ algebra.inertia @ back
+        spatial = back.T @ inertia @ back
         reactions.append(_reactions(spatial, rows, brackets))
         gyroscopic = gyroscopic_form(spatial, brackets, rows).reshape(-1, group.dim)
         rates.append((gyroscopic + reactions[-1]) @ np.linalg.inv(back))
-    return algebra.conserved(*(algebra.vanishing(np.concatenate(part)) for part in (rates, reactions)))
+    both = (_vanishing(np.concatenate(part), largest) for part in (rates, reactions))
+    return ConservedMomenta(*(_span(rows * units) for rows in both))
 
 
-class _Algebra(NamedTuple):
-    """The algebra of a system in the units of its displacements.
+def _brackets(system: AbstractSystem, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
+    """Return the brackets of rows in units of displacements."""
+    units = system.displacement_units
+    return system.group.bracket((x * units)[:, None, :], (y * units)[None, :, :]) / units
 
-    Attributes:
-        group: The group.
-        units: Of displacements.
-        rows: Orthonormal in these units, along the constraint.
-        inertia: The inertia operator in these units.
-    """
 
-    group: AbstractMatrixGroup
-    units: Float[np.ndarray, "dim"]
-    rows: Float[np.ndarray, "k dim"]
-    inertia: Float[np.ndarray, "dim dim"]
-
-    @classmethod
-    def of(cls, system: AbstractSystem) -> "_Algebra":
-        group, units = system.group, system.displacement_units
-        rows = _span(system.constraint_subspace / units)
-        return cls(group, units, rows, system.inertia_operator * units * units[:, None])
-
-    def brackets(self, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
-        """Return the brackets of rows."""
-        return self.group.bracket((x * self.units)[:, None, :], (y * self.units)[None, :, :]) / self.units
-
-    def vanishing(self, torques: Float[np.ndarray, "c m"]) -> Float[np.ndarray, "n m"]:
-        """Return orthonormal rows on which torques vanish."""
-        return _vanishing(torques, np.abs(self.inertia).max())
-
-    def largest_ideal(self, subspace: Float[np.ndarray, "m dim"]) -> Float[np.ndarray, "n dim"]:
-        """Return the largest subspace of the given one that all brackets map to itself."""
-        while len(subspace):
-            escape = self.brackets(subspace, np.eye(self.group.dim)) @ null_space(subspace).T
-            smaller = _vanishing(escape.reshape(len(subspace), -1).T, 1.0) @ subspace
-            if len(smaller) == len(subspace):
-                break
-            subspace = smaller
-        return subspace
-
-    def conserved(self, body: np.ndarray, spatial: np.ndarray) -> ConservedMomenta:
-        """Return the momenta along rows, which are orthonormal in the user's units then."""
-        return ConservedMomenta(_span(body * self.units), _span(spatial * self.units))
+def _largest_ideal(system: AbstractSystem, subspace: Float[np.ndarray, "m dim"]) -> Float[np.ndarray, "n dim"]:
+    """Return the largest subspace of the given one that all brackets map to itself."""
+    while len(subspace):
+        escape = _brackets(system, subspace, np.eye(system.group.dim)) @ null_space(subspace).T
+        smaller = _vanishing(escape.reshape(len(subspace), -1).T, 1.0) @ subspace
+        if len(smaller) == len(subspace):
+            break
+        subspace = smaller
+    return subspace
 
 
 def _reactions(

@@ -12,7 +12,7 @@ from scipy.optimize import bisect, brentq
 from nonholo.base.checks import array, count, error, function, instance, needs, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.results import result
-from nonholo.base.types import Bool, Float, Inexact, Int
+from nonholo.base.types import Float, Inexact, Int
 from nonholo.discrete import Discretization
 from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, extent_of
 
@@ -102,7 +102,15 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
     change, count, sizes = local.change[:, independent], len(local.times), _sizes(local)
     ratios = sizes / sizes[:, None]
-    matters = _influences(slope * ratios[independent][:, independent], int((independent < local.places).sum()))
+
+    # a change depends on a state if it does so anywhere where the derivatives are finite, directly or by other states
+    finite = np.abs(slope * ratios[independent][:, independent])
+    finite = finite[np.isfinite(finite).all(axis=(1, 2))]
+    depends = np.any(finite > _UNSEEN * finite.max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
+    matters = independent >= local.places
+    while np.any(more := depends[matters].any(axis=0) & ~matters):
+        matters |= more
+
     states = independent[matters]
     matrix, defects, units = slope[:count, matters][:, :, matters], change[:count, matters], sizes[states]
     rates, largest = matrix * ratios[states][:, states], np.abs(local.slope[0] * ratios).max()
@@ -130,19 +138,6 @@ def _sizes(local: Local) -> Float[np.ndarray, "m"]:
     rate = max(np.sqrt(pulls * moves), drags)
     sizes[:n] *= moves / rate if rate * moves > 0 else 1.0
     return sizes
-
-
-def _influences(slope: Float[np.ndarray, "K d d"], places: int) -> Bool[np.ndarray, "d"]:
-    """Return which states the velocities depend on, directly or by other states; velocities are among them.
-
-    A change depends on a state if it does so anywhere where the derivatives are finite.
-    """
-    finite = np.abs(slope[np.isfinite(slope).all(axis=(1, 2))])
-    depends = np.any(finite > _UNSEEN * finite.max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
-    matters = np.arange(len(depends)) >= places
-    while np.any(more := depends[matters].any(axis=0) & ~matters):
-        matters |= more
-    return matters
 
 
 @result

@@ -95,11 +95,11 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
         >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
         array([ 0. , -0.4])
     """
-    steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
+    steps = _tangent_in_units(any_orbit(where := "lyapunov_exponents(orbit=...)", orbit))
     if not len(steps):
-        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+        raise error(where, "have a step", "one state", "Run longer.")
     if not orbit.is_discrete and not ((conditions := np.linalg.cond(steps)) <= 1 / _HIDDEN).all():
-        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
+        got = f"a tangent map of condition {conditions.max():.3g}"
         raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
     for step in steps:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Ranges, Search, Shapes, Solution, by_name
+from nonholo.analysis.inverse._likelihood import LOSSES, Problem, Ranges, Search, Shapes, Solution, by_name
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
@@ -202,18 +202,13 @@ def fit(
     levels = _noise_levels(noise, problem)
     search = Search(problem, ranges, lambda point: system_of(by_name(shapes, point[: len(numbers)])), loss, levels)
     begin = np.concatenate([numbers, starts.ravel()])
-    _check_begin(problem, begin)
-    return _result(search, search.run(begin), begin, shapes, functools.partial(model.orbit, h=h))
-
-
-def _check_begin(problem: Problem, point: np.ndarray) -> None:
-    """Refuse fewer numbers than there are unknowns, and a guess without a motion."""
-    if len(problem.kind_of) <= len(point):
-        got = f"{len(problem.kind_of)} numbers for {len(point)} unknowns"
+    if len(problem.kind_of) <= len(begin):
+        got = f"{len(problem.kind_of)} numbers for {len(begin)} unknowns"
         raise error(WHERE, "hold more numbers than there are unknowns", got, "Record for longer.")
-    if not np.isfinite(problem.rows(point)).all():
+    if not np.isfinite(problem.rows(begin)).all():
         remedy = "Begin nearer to the body, or with a smaller time step."
         raise error("fit(guess=...)", "have a motion through the measurements", "an orbit that ends", remedy)
+    return _result(search, search.run(begin), begin, shapes, functools.partial(model.orbit, h=h))
 
 
 def _noise_levels(noise: Any, problem: Problem) -> np.ndarray:
@@ -243,8 +238,7 @@ def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
 
 def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:
     problem, point, P = search.problem, solution.point, search.problem.count
-    _check_levels(search, solution)
-    _check_determined(solution.estimate, shapes, P)
+    _check_determined(search, solution, shapes)
     covariance, plain, degrees = (x[..., :P] for x in solution.estimate.covariance(~np.isfinite(search.levels)))
     covariance, plain = covariance[:P], plain[:P].diagonal()
     system, parameters = search.system_at(point), by_name(shapes, point[:P])
@@ -262,33 +256,25 @@ def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shape
     return Fit(parameters, covariance, system, orbit, residuals, levels, outcome, degrees, free, minimum)
 
 
-def _check_determined(estimate: Estimate, shapes: Any, count: int) -> None:
-    """Refuse a record where a combination of numbers changes nothing."""
-    if _is_flat(estimate):
-        directions = np.linalg.svd(estimate.triangle)[2]
-        flat = np.abs(directions[-1] if estimate.lengths.all() else estimate.lengths == 0)[:count]
+def _check_determined(search: Search, solution: Solution, shapes: Any) -> None:
+    """Refuse a record where a combination of numbers changes nothing, and before it a kind that the fit uses up.
+
+    The noise of such a kind cannot be seen. The search for it may end anywhere, also where nothing is determined.
+    """
+    estimate, (_, sizes, directions) = solution.estimate, np.linalg.svd(solution.estimate.triangle)
+    is_flat = not estimate.lengths.all() or bool(sizes[-1] < _FLAT * sizes[0])
+    is_used_up = is_flat & (estimate.counts <= len(solution.point))
+    free = np.where(np.isfinite(search.levels), np.inf, np.where(is_used_up, 0.0, estimate.free))
+    if free.min() < _LEAST_FREE:
+        at = int(free.argmin())
+        kind, count = list(search.problem.there)[at], estimate.counts[at]
+        got = f"{count} numbers of {kind}, of which {free[at]:.2g} are left by the fit"
+        raise error(WHERE, "determine the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
+    if is_flat:
+        flat = np.abs(directions[-1] if estimate.lengths.all() else estimate.lengths == 0)[: search.problem.count]
         got = ", ".join(np.array(_names(shapes))[flat > 0.1 * flat.max()]) or "a start"
         remedy = "Fix one of them in system_of, such as a mass: a free motion does not determine the unit of mass."
         raise error(WHERE, "determine all parameters", f"none of {got} alone", remedy)
-
-
-def _is_flat(estimate: Estimate) -> bool:
-    sizes = np.linalg.svd(estimate.triangle, compute_uv=False)
-    return not estimate.lengths.all() or bool(sizes[-1] < _FLAT * sizes[0])
-
-
-def _check_levels(search: Search, solution: Solution) -> None:
-    """Refuse a kind of which all numbers are used up by the fit: its noise cannot be seen.
-
-    The search for such a noise may end anywhere, also where nothing is determined.
-    """
-    is_used_up = _is_flat(solution.estimate) & (solution.estimate.counts <= len(solution.point))
-    free = np.where(np.isfinite(search.levels), np.inf, np.where(is_used_up, 0.0, solution.estimate.free))
-    if free.min() < _LEAST_FREE:
-        at = int(free.argmin())
-        kind, count = list(search.problem.there)[at], solution.estimate.counts[at]
-        got = f"{count} numbers of {kind}, of which {free[at]:.2g} are left by the fit"
-        raise error(WHERE, "determine the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
 
 
 def _vector(guess: Any) -> tuple[np.ndarray, Any]:

@@ -52,11 +52,11 @@ class AbstractModel(abc.ABC):
         Trials run on through nodes at which nothing is measured, so that few numbers of steps are compiled. A table of
         forces, which may end with the record, has its own number.
         """
-        (run, *settings), nodes = program, next(iter(kinds.values())).shape[1]
+        (run, time_step), nodes = program, next(iter(kinds.values())).shape[1]
         room = nodes if getattr(self.system, "table", None) is not None else rows_above(nodes)
         more = (0, 0), (0, room - nodes), (0, 0)
         longer = {kind: np.pad(rows, more, constant_values=np.nan) for kind, rows in kinds.items()}
-        parts = in_double(run, *settings, numbers, starts, poses, longer)
+        parts = in_double(run, time_step, numbers, starts, poses, longer)
         return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
 
 
@@ -74,41 +74,41 @@ class GroupModel(AbstractModel):
 
     def program(self, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> tuple[Any, ...]:
         """Return compiled residuals of trials by kind with derivatives, and the time step."""
-        return _compile_on_group(self.maker, system_of, shapes), time_step
+        return _compile(GroupModel(None, self.maker), system_of, shapes), time_step
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
         """Return the motion of a trial."""
-        return simulate(discretize(system, h), **_first_state(system, start, pose), steps=steps)
+        return simulate(discretize(system, h), **self.first_state(system, start, pose), steps=steps)
 
+    def first_state(self, system: Any, start: Array, pose: Array) -> dict[str, Array]:
+        """Return the first velocity, and the pose that a start changes to; one along the constraint changes none."""
+        k, dim, xp = system.rank, system.group.dim, start.__array_namespace__()
+        if len(start) > k:
+            pose = pose @ system.group.exp(xp.pad(start[k:], (0, k + dim - len(start))))
+        return {"restricted_velocity": start[:k], "configuration": pose}
 
-def _first_state(system: Any, start: Array, pose: Array) -> dict[str, Array]:
-    """Return the first velocity, and the pose that a start changes to; one along the constraint alone changes none."""
-    k, dim, xp = system.rank, system.group.dim, start.__array_namespace__()
-    if len(start) > k:
-        pose = pose @ system.group.exp(xp.pad(start[k:], (0, k + dim - len(start))))
-    return {"restricted_velocity": start[:k], "configuration": pose}
-
-
-@functools.lru_cache(maxsize=8)
-def _compile_on_group(_maker: Any, system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
-    def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
-        system = system_of(by_name(shapes, numbers))
-        steps = len(next(iter(kinds.values()))) - 1
-        orbit = rollout(discretize(system, time_step), **_first_state(system, start, g), steps=steps)
+    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured."""
 
         def velocity() -> Array:
             inertia = jnp.asarray(system.constrained_inertia)
-            return jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
+            return jnp.linalg.solve(inertia, states.restricted_momentum.T).T @ system.constraint_subspace
 
-        rows = {kind: _gap(system.group, kind, values, orbit, velocity) for kind, values in kinds.items()}
+        return _gap(system.group, kind, values, states, velocity)
+
+
+@functools.lru_cache(maxsize=16)
+def _compile(model: Any, system_of: Callable[..., Any], shapes: Shapes, own_step: float | None = None) -> Any:
+    """Return compiled rows of trials by kind, with derivatives by numbers and starts, for a time step or for all."""
+
+    def one(time_step: Array, numbers: Array, start: Array, pose: Array, kinds: Trial) -> tuple[Any, Any]:
+        system, steps = system_of(by_name(shapes, numbers)), len(next(iter(kinds.values()))) - 1
+        motion = discretize(system, own_step or time_step)
+        states = rollout(motion, **model.first_state(system, start, pose), steps=steps)
+        rows = {kind: model.gap(kind, values, system, states) for kind, values in kinds.items()}
         return rows, rows
 
-    return _with_slopes(one, (1, 2))
-
-
-def _with_slopes(one: Callable[..., Any], argnums: tuple[int, int]) -> Callable[..., Any]:
-    """Return compiled rows of trials by kind, derived by numbers and starts; these come after what trials share."""
-    each = jax.vmap(jax.jacfwd(one, argnums=argnums, has_aux=True), in_axes=(*argnums[1] * (None,), 0, 0, 0))
+    each = jax.vmap(jax.jacfwd(one, argnums=(1, 2), has_aux=True), in_axes=(None, None, 0, 0, 0))
 
     def by_kind(*arguments: Any) -> dict[str, tuple[Array, Array, Array]]:
         slopes, rows = each(*arguments)
@@ -183,8 +183,13 @@ class AbstractFunctionModel(AbstractModel):
         return [i for i in range(n) if (i in at or matters[i]) and i not in driven]
 
     def program(self, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> tuple[Any, ...]:
-        """Return compiled residuals of trials by kind with derivatives."""
-        return (_compile_in_coordinates(self, system_of, shapes, time_step),)
+        """Return compiled residuals of trials by kind with derivatives, and the time step."""
+        return _compile(self, system_of, shapes, time_step), time_step
+
+    def first_state(self, system: Any, start: Array, pose: Array) -> dict[str, Array]:
+        """Return the first configuration and momentum of a trial."""
+        q, p = _begin(system.plain, start, pose)
+        return {"momentum": p, "configuration": q}
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Any:
         """Return the motion of a trial."""
@@ -285,19 +290,6 @@ def _slopes(system: Any, place: Array, xis: Array, vs: Array, h: Array) -> Array
         return jnp.concatenate([*parts, equations.forms(system, x).ravel()])
 
     return jax.vmap(functools.partial(jax.jacfwd(of_step), jnp.zeros(xis.shape[1])))(xis, vs)
-
-
-@functools.lru_cache(maxsize=8)
-def _compile_in_coordinates(model: Any, system_of: Callable[..., Any], shapes: Shapes, time_step: float) -> Any:
-    def one(numbers: Array, start: Array, pose: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
-        system = system_of(by_name(shapes, numbers))
-        q, p = _begin(system.plain, start, pose)
-        steps = len(next(iter(kinds.values()))) - 1
-        states = rollout(discretize(system, time_step), momentum=p, configuration=q, steps=steps)
-        rows = {kind: model.gap(kind, values, system, states) for kind, values in kinds.items()}
-        return rows, rows
-
-    return _with_slopes(one, (0, 1))
 
 
 def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> tuple[Any, ...]:

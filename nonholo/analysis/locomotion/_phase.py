@@ -109,8 +109,13 @@ def geometric_phase(
         gap, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine, sizes)
         if gap < _AGREED and inside < _AGREED:
             return fine
+        if panels == _MOST and gap < _AGREED:  # singular shapes inside the gait alone
+            return dataclasses.replace(fine, area_rule=np.full_like(fine.area_rule, np.nan))
         if panels == _MOST:
-            return _without_area_rule(fine, gap)
+            at = _nearest(connection, fine.shape)
+            got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"
+            remedy = "Name its corners, or keep away from singular shapes."
+            raise error("geometric_phase(gait=...)", "be smooth between its corners", got, remedy)
         panels, coarse = 2 * panels, fine
 
 
@@ -196,16 +201,6 @@ def _distances(one: GeometricPhase, other: GeometricPhase, sizes: Float[np.ndarr
     pairs = zip(*ends, (unit, sizes, unit, unit), strict=True)
     gaps = [np.abs(a / u - b / u).max(initial=0.0) / (1 + np.abs(a / u).max(initial=0.0)) for a, b, u in pairs]
     return float(np.max(gaps[:3])), float(gaps[3])
-
-
-def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:
-    """Return a phase without area rule, if there are singular shapes inside the gait alone."""
-    if gap < _AGREED:
-        return dataclasses.replace(phase, area_rule=np.full_like(phase.area_rule, np.nan))
-    at = _nearest(phase.connection, phase.shape)
-    got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"
-    remedy = "Name its corners, or keep away from singular shapes."
-    raise error("geometric_phase(gait=...)", "be smooth between its corners", got, remedy)
 
 
 def _check_closed(connection: LocalConnection, shape: Array) -> None:

@@ -86,14 +86,10 @@ class DiscLevel(NamedTuple):
                 past.append(place)
                 place = place.following(arcs)
             if pieces:
-                curves.append(self._chain(pieces, count))
+                runs = [self._points(arc.sign, arc.directions(count), side)[::sense] for arc, side, sense in pieces]
+                curves.append(np.concatenate([runs[0], *(run[1:] for run in runs[1:])]))
+                curves[-1][-1] = curves[-1][0]  # equal but for the square root of rounding
         return tuple(curves)
-
-    def _chain(self, pieces: list[Place], count: int) -> Float[np.ndarray, "K 3"]:
-        runs = [self._points(arc.sign, arc.directions(count), side)[::sense] for arc, side, sense in pieces]
-        curve = np.concatenate([runs[0], *(run[1:] for run in runs[1:])])
-        curve[-1] = curve[0]  # equal but for the square root of rounding
-        return curve
 
     def _arcs(self, sign: int) -> list[Arc]:
         breaks = [(angle, FOLD) for angle in self._folds()]
@@ -218,21 +214,20 @@ class SteinerSurface(NamedTuple):
         return np.linalg.inv(self.to_forms) @ ((common @ self.forms) @ common)
 
     def _pairs(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Return the vectors u and v of the singular matrices of the pencil."""
-        return [(vectors[:, 2], vectors[:, 0]) for _, vectors in map(np.linalg.eigh, _singular(self.pencil))]
+        """Return the vectors u and v of the real singular matrices of the pencil.
 
-
-def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
-    """Return the real singular matrices of a pencil; the basis is turned so that none is at infinity."""
-    turns = np.pi * np.arange(7) / 7
-    candidates = [np.cos(a) * pencil[1] + np.sin(a) * pencil[0] for a in turns]
-    best = turns[np.argmax(np.abs(np.linalg.det(candidates)))]
-    base = np.cos(best) * pencil[0] - np.sin(best) * pencil[1]
-    step = np.cos(best) * pencil[1] + np.sin(best) * pencil[0]
-    adjugates = [_bilinear(S, S) / 2 for S in (base, step)]
-    middle = (np.trace(adjugates[1] @ base), np.trace(adjugates[0] @ step))
-    roots = np.roots([np.linalg.det(step), *middle, np.linalg.det(base)])
-    return [base + t.real * step for t in roots if abs(t.imag) <= _REAL * (1 + abs(t))]
+        Its basis is turned so that none of them is at infinity.
+        """
+        first, second = self.pencil[:2]
+        turns = np.pi * np.arange(7) / 7
+        best = turns[np.argmax(np.abs(np.linalg.det([np.cos(a) * second + np.sin(a) * first for a in turns])))]
+        base = np.cos(best) * first - np.sin(best) * second
+        step = np.cos(best) * second + np.sin(best) * first
+        adjugates = [_bilinear(S, S) / 2 for S in (base, step)]
+        middle = (np.trace(adjugates[1] @ base), np.trace(adjugates[0] @ step))
+        roots = np.roots([np.linalg.det(step), *middle, np.linalg.det(base)])
+        matrices = (base + t.real * step for t in roots if abs(t.imag) <= _REAL * (1 + abs(t)))
+        return [(vectors[:, 2], vectors[:, 0]) for _, vectors in map(np.linalg.eigh, matrices)]
 
 
 def _four(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "4 6"]:

@@ -71,7 +71,12 @@ class StripLevel(NamedTuple):
 
     def components(self, count: int) -> tuple[Float[np.ndarray, "K 2"], ...]:
         """Return the connected curves; those of a balanced sleigh that go to infinity are cut."""
-        folds = [float(2 * np.arcsin(np.sqrt(x))) for x in self._turning()]
+        # the translation is zero where 4 x (I - J x) = 2 E h^2
+        under, folds = self.whole**2 - self.inertia * self.e, []
+        if under >= 0:
+            larger = self.whole + np.sqrt(under)
+            turning = self.e / (2 * larger), larger / (2 * self.inertia)
+            folds = [float(2 * np.arcsin(np.sqrt(x))) for x in turning if x < 1]
         if self.whole == self.inertia:
             return self._balanced_components(folds, count)
         if not folds:  # the two solutions are one curve, which closes after two turns
@@ -95,14 +100,6 @@ class StripLevel(NamedTuple):
         oval = np.concatenate([self._points(1, angle), self._points(-1, angle[-2::-1])])
         oval[-1] = oval[0]
         return oval
-
-    def _turning(self) -> list[float]:
-        """Return the x up to 1 where the translation is zero, 4 x (I - J x) = 2 E h^2, ascending."""
-        under = self.whole**2 - self.inertia * self.e
-        if under < 0:
-            return []
-        larger = self.whole + np.sqrt(under)
-        return [x for x in (self.e / (2 * larger), larger / (2 * self.inertia)) if x < 1]
 
     def _square(self, angle: np.ndarray) -> np.ndarray:
         x = np.sin(angle / 2) ** 2

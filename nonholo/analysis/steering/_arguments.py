@@ -95,26 +95,22 @@ def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[
 def _end(name: str, system: System, end: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Return the velocities along the constraint and the poses that an end names, one or many of them."""
     check_names(f"steer({name}=...)", end)
-    w = _velocities(f"steer.{name}", system, velocities) if (velocities := velocities_of(end)) else None
-    g, where, size = end.get("configuration"), f"steer.{name}(configuration=...)", system.group.identity.shape
+    w, owner = None, f"steer.{name}"
+    if velocities := velocities_of(end):
+        kind = one_start(owner, **velocities)
+        axes = max(1, min(2, len(shape_of(velocities[kind]))))
+        w = array(f"{owner}({kind}=...)", velocities[kind], (None,) * axes, "Pass one, or one for each member.")
+        momenta = [Start(owner, kind, row).momentum(system, None) for row in np.atleast_2d(w)]
+        if kind != "restricted_velocity":
+            rows = [system.restricted_velocity(system.from_canonical(each)) for each in momenta]
+            w = np.array(rows).reshape(*w.shape[:-1], system.rank)
+    g, where, size = end.get("configuration"), f"{owner}(configuration=...)", system.group.identity.shape
     if g is not None:
         shape = (None,) * (len(shape_of(g)) - 2) + size
         g = array(where, g, shape[-3:], f"Pass elements of {system.group} as matrices.")
         for one in g.reshape(-1, *size):
             in_group(where, system.group, one)
     return w, g
-
-
-def _velocities(owner: str, system: System, velocities: dict[str, Any]) -> np.ndarray:
-    """Return the velocities along the constraint of an end, from those or from momenta that it names."""
-    name = one_start(owner, **velocities)
-    axes = max(1, min(2, len(shape_of(velocities[name]))))
-    rows = array(f"{owner}({name}=...)", velocities[name], (None,) * axes, "Pass one, or one for each member.")
-    starts = [Start(owner, name, row) for row in np.atleast_2d(rows)]
-    momenta = [system.from_canonical(start.momentum(system, None)) for start in starts]
-    if name == "restricted_velocity":
-        return rows
-    return np.array([system.restricted_velocity(each) for each in momenta]).reshape(*rows.shape[:-1], system.rank)
 
 
 def _members(ends: tuple[np.ndarray | None, ...]) -> tuple[Ends, bool]:
@@ -296,7 +292,11 @@ class Way(NamedTuple):
 
     def positions(self, ends: Mapping[int, Float[np.ndarray, "n"]], steps: int) -> Float[np.ndarray, "K n"]:
         """Return positions to begin with: along the path of the guess, or evenly between the ends and the places."""
-        return evenly({**ends, **self.via}, steps) if self.guess.path is None else resample(self.guess.path, steps)
+        if self.guess.path is not None:
+            return resample(self.guess.path, steps)
+        at = dict(sorted({**ends, **self.via}.items()))
+        columns = np.array(list(at.values())).T
+        return np.array([np.interp(np.arange(steps + 1), list(at), column) for column in columns]).T
 
     def penetration(self, points: Float[np.ndarray, "... points n"]) -> float:
         """Return how deep points of the outline lie in an obstacle; zero where all are clear."""
@@ -308,7 +308,10 @@ class Way(NamedTuple):
 
         States are clear of obstacles; a step over one, by half of its radius on a straight line, comes too near too.
         """
-        depth = self.radii - _apart(points[:-1, :, None], points[1:, :, None], self.centers)
+        begin, along = points[:-1, :, None], points[1:, :, None] - points[:-1, :, None]
+        off, square = self.centers - begin, (along**2).sum(axis=-1)
+        part = np.clip((off * along).sum(axis=-1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+        depth = self.radii - np.linalg.norm(off - part[..., None] * along, axis=-1)
         leaps = float(np.where(depth > self.radii / 2, depth, 0.0).max(initial=0.0))
         off = [float(np.abs(positions[step] - place).max()) for step, place in self.via.items()]
         return max(self.penetration(points), leaps, *off, 0.0)
@@ -334,14 +337,6 @@ def _checked_outline(system: Any, n: int, outline: Any) -> Any:
     return points
 
 
-def _apart(begin: np.ndarray, end: np.ndarray, centers: np.ndarray) -> np.ndarray:
-    """Return the distances of points from the straight lines between others."""
-    along, off = end - begin, centers - begin
-    square = (along**2).sum(axis=-1)
-    part = np.clip((off * along).sum(axis=-1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
-    return np.linalg.norm(off - part[..., None] * along, axis=-1)
-
-
 def _places(n: int, steps: int, via: Any) -> dict[int, np.ndarray]:
     where, remedy = "steer(via=...)", f"Pass {{step: position}}, steps from 1 to {steps}."
     if via is None:
@@ -349,13 +344,6 @@ def _places(n: int, steps: int, via: Any) -> dict[int, np.ndarray]:
     if not isinstance(via, Mapping) or not all(is_integer(step) and 0 < step <= steps for step in via):
         raise error(where, "name places by the number of a step", shown(via), remedy)
     return {int(step): array(where, place, (n,), remedy) for step, place in via.items()}
-
-
-def evenly(at: Mapping[int, Float[np.ndarray, "n"]], steps: int) -> Float[np.ndarray, "K n"]:
-    """Return a path that is evenly between points at some steps."""
-    order = sorted(at)
-    columns = np.array([at[step] for step in order]).T
-    return np.array([np.interp(np.arange(steps + 1), order, column) for column in columns]).T
 
 
 def resample(path: Float[np.ndarray, "P n"], steps: int) -> Float[np.ndarray, "K n"]:
@@ -382,13 +370,11 @@ def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array,
     turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]
     c, s = xp.cos(turn), xp.sin(turn)
     rows = xp.stack([xp.stack([c, s], axis=-1), xp.stack([-s, c], axis=-1)], axis=-2)
-    return xp.stack([x, y], axis=-1)[..., None, :] + _outline_at(outline, q[..., : system.dimension]) @ rows
-
-
-def _outline_at(outline: Any, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
-    """Return points of a body with configurations; a function of NumPy's is called with each of them."""
-    if not callable(outline) or not isinstance(q, np.ndarray):
-        return outline(q) if callable(outline) else outline
-    with double_precision():
-        rows = np.array([outline(row) for row in q.reshape(-1, q.shape[-1])])
-    return rows.reshape(*q.shape[:-1], *outline.shape)
+    at = q[..., : system.dimension]
+    if callable(outline) and isinstance(q, np.ndarray):
+        with double_precision():
+            points = np.array([outline(each) for each in at.reshape(-1, at.shape[-1])])
+        points = points.reshape(*at.shape[:-1], *outline.shape)
+    else:
+        points = outline(at) if callable(outline) else outline
+    return xp.stack([x, y], axis=-1)[..., None, :] + points @ rows

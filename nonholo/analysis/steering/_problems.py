@@ -182,24 +182,14 @@ def checked_goal(discrete: Any, goal: Any, is_free: bool) -> Goal:
     v = None if v is None else array(where, v, (system.dimension,), "Pass a rate for each coordinate.")
     if not system.coordinates:
         return Goal({}, None if q is None else system.places.configuration(where, q), v)
-    return Goal(_checked_coordinates(where, system, {} if q is None else q), None, v)
-
-
-def _checked_coordinates(where: str, system: Any, q: Any) -> dict[int, float]:
-    """Return coordinates by index, of all or of some of them by name."""
+    q = {} if q is None else q
     remedy = f"Pass {system.dimension} numbers, or some of them by name: {', '.join(system.coordinates)}."
     if not isinstance(q, Mapping):
         q = dict(zip(system.coordinates, array(where, q, (system.dimension,), remedy), strict=True))
     if not set(q) <= set(system.coordinates):
         raise error(where, "name coordinates of the system", shown(sorted(map(str, q))), remedy)
     numbers = array(where, list(q.values()), (len(q),), remedy)
-    return dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True))
-
-
-def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]) -> Any:
-    """Return the rollout under forces: compiled once for all of them."""
-    v, q = start
-    return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
+    return Goal(dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True)), None, v)
 
 
 Extent = tuple[Float[np.ndarray, "n"], float]
@@ -231,9 +221,13 @@ def coordinate_problem(
     steps, size = len(limits[0]) // n, system.shapes[0][0]
     sizes, duration = far * unit, steps * float(discrete.time_step)
     last = goal.end(system, x, duration)
-    nodes = _nodes(discrete, way, last, goal, unit)
+    directions, velocity, h = np.zeros((0, n)), np.zeros(n), np.float64(discrete.time_step)
+    if goal.velocity is not None:
+        forms = lagrange_dalembert.in_double(equations.forms, system.plain, last)
+        directions, velocity = np.linalg.svd(forms * unit)[2][system.constraints :], goal.velocity
+    nodes = CoordinateNodes(system.plain, h, way.outline, unit, directions, velocity, goal.pose)
     first = np.append(x, lagrange_dalembert.momentum(system, x, v))
-    program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
+    program = Program(Steps(nodes, way.centers, way.radii, h, way.bounds), first, np.zeros((steps, n)))
     q, at = x[:size], _arguments.numbers_of_position(system)
     pins: dict[int, dict[int, Any]] = {step: dict(zip(at, place, strict=True)) for step, place in way.via.items()}
     pins[steps] = pins.get(steps, {}) | goal.coordinates
@@ -250,20 +244,13 @@ def coordinate_problem(
         return _coordinate_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
-        by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
-        return _coordinate_gap(program, goal, way, sizes, far / duration, by(discrete, (v, q), forces))
+        if system.discrete_lagrangian or system.discrete_constraints:  # compiled once for all forces
+            orbit = rollout(discrete, configuration=q, body_velocity=v, steps=steps, controls=forces)
+        else:
+            orbit = driven(discrete, (v, q), forces)
+        return _coordinate_gap(program, goal, way, sizes, far / duration, orbit)
 
     return program, bounds_of(program, limits, pins), first_guess, gap_of
-
-
-def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal, unit: np.ndarray) -> CoordinateNodes:
-    """Return the unknowns of steps to a place, where the system is to have a velocity or none."""
-    system, h, n = discrete.system.plain, np.float64(discrete.time_step), discrete.system.dimension
-    if goal.velocity is None:
-        return CoordinateNodes(system, h, way.outline, unit, np.zeros((0, n)), np.zeros(n), goal.pose)
-    forms = lagrange_dalembert.in_double(equations.forms, system, last)
-    directions = np.linalg.svd(forms * unit)[2][system.constraints :]
-    return CoordinateNodes(system, h, way.outline, unit, directions, goal.velocity, goal.pose)
 
 
 def _coordinate_gap(program: Program, goal: Goal, way: Way, sizes: np.ndarray, speed: float, orbit: Any) -> float:
@@ -312,11 +299,11 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
 
 def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> tuple[Any, ...]:
     """Return the problem for `transcribe` of one member, from velocity and pose at the start and those of the goal."""
-    (w, g, to_pose, to_velocity), system = ends, discrete.system
+    (w, g, to_pose, to_velocity), system, group = ends, discrete.system, discrete.system.group
     free = dataclasses.replace(discrete, system=system.inside)
-    steps, n = len(limits[0]) // system.rank, system.group.size
+    steps, n = len(limits[0]) // system.rank, group.size
     nodes = GroupNodes(free, discrete.forces, way.outline, to_pose)
-    table = np.zeros((steps, system.group.dim)) if discrete.forces is None else discrete.forces.rows(np.arange(steps))
+    table = np.zeros((steps, group.dim)) if discrete.forces is None else discrete.forces.rows(np.arange(steps))
     first = np.append(_numbers(nodes, g), system.restricted_momentum(w))
     steps_alike = Steps(nodes, way.centers, way.radii, np.float64(discrete.time_step), way.bounds)
     program = Program(steps_alike, first, table)
@@ -325,11 +312,16 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
         momenta = enumerate(system.restricted_momentum(to_velocity), len(first) - system.rank)
         pins[steps] = pins.get(steps, {}) | dict(momenta)
     poses, forces = _group_guess(discrete, (g, to_pose), way, steps)
+    lengths = system.displacement_units.copy()  # in proportion to what there is on the way
+    if group.is_affine:
+        places = np.concatenate([poses[:, :-1, -1], way.centers])
+        lengths[1 - n :] = np.linalg.norm(np.ptp(places, axis=0)) / 2 or lengths[1 - n :]
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         noise = spread * sizes(discrete, steps, ends).reshape(steps, -1) * rng.normal(size=(steps, system.rank))
-        bent = _bent(discrete, poses, spread * rng.normal(size=system.group.dim), way)
+        bow = np.sin(np.linspace(0, np.pi, len(poses)))[:, None]
+        bent = poses @ group.exp(bow * (spread * rng.normal(size=group.dim)) * lengths)
         return _group_unknowns(nodes, bent, forces + noise)
 
     def gap_of(forces: np.ndarray) -> float:
@@ -375,17 +367,6 @@ def _group_guess(
         ahead = np.gradient(poses[:, 0, 2] + 1j * poses[:, 1, 2])
         poses[:, :2, :2] = group.exp(np.angle(ahead)[:, None] * [1.0, 0.0, 0.0])[:, :2, :2]
     return poses, np.zeros((steps, len(rows)))
-
-
-def _bent(discrete: Discretization, poses: np.ndarray, aside: np.ndarray, way: Way) -> np.ndarray:
-    """Return poses bent aside between their ends; lengths are in proportion to what there is on the way."""
-    group, scale = discrete.system.group, discrete.system.displacement_units.copy()
-    if group.is_affine:
-        n = group.size - 1
-        places = np.concatenate([poses[:, :n, n], way.centers])
-        scale[-n:] = np.linalg.norm(np.ptp(places, axis=0)) / 2 or scale[-n:]
-    bow = np.sin(np.linspace(0, np.pi, len(poses)))[:, None]
-    return poses @ group.exp(bow * aside * scale)
 
 
 def _group_unknowns(nodes: GroupNodes, poses: np.ndarray, forces: np.ndarray) -> np.ndarray:
