@@ -118,7 +118,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         if J is None or not self.group.is_rigid:
             return np.asarray(False)
         eigenvalues = np.linalg.eigvalsh(J)
-        is_symmetric = (J.swapaxes(-1, -2) == J).all(axis=(-2, -1))
+        is_symmetric = (J.mT == J).all(axis=(-2, -1))
         return np.asarray(is_symmetric & (eigenvalues[..., 0] > 1e-12 * eigenvalues[..., -1]))
 
     @system_memo
@@ -153,7 +153,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         if self.canonical is self:
             within_memory("The frame map of a body", 8.0 * self.rank**2, "Take a smaller n.")
             return np.eye(self.rank)
-        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).swapaxes(-1, -2)
+        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).mT
         return images @ np.linalg.pinv(self.constraint_subspace)
 
     @system_memo
@@ -327,7 +327,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
     def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
         """Return the momenta of `restricted_momentum` for velocities that are checked."""
         form = self.inertia_along
-        return form.momenta(velocity) if isinstance(form, WideInertia) else applied(form.swapaxes(-1, -2), velocity)
+        return form.momenta(velocity) if isinstance(form, WideInertia) else applied(form.mT, velocity)
 
     def constrained_energy(
         self, momentum: Covectors | Along, configuration: Poses | None = None
@@ -450,11 +450,11 @@ class AbstractLRSystem(AbstractSystem):
                    [0., 5.]])
         """
         g = self._at(configuration)
-        xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
+        rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is not None:
-            return _mass.inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
-        images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
-        return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
+            return _mass.inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ g.mT)
+        images = rows @ self.group.adjoint(self.group.inverse(g)).mT
+        return images @ self.inertia_operator @ images.mT
 
     def _at(self, configuration: Array | None) -> Array:
         where, remedy = f"{type(self).__name__} (configuration=...)", "Pass the matrix of a pose."
@@ -498,7 +498,7 @@ class AbstractLRSystem(AbstractSystem):
     def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
         inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)
-        return applied(inertia.swapaxes(-1, -2), velocity)
+        return applied(inertia.mT, velocity)
 
 
 System = AbstractSystem

@@ -74,7 +74,7 @@ class Linear(AbstractLinear):
 
     def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N N"], Float[Array, "dim N N"]]:
         """Return vectors F_j and L: -dU is the sum of L_j g^T F_j, over the columns of A."""
-        return -self.matrix.T, group.basis.swapaxes(-1, -2)
+        return -self.matrix.T, group.basis.mT
 
 
 def covector_of(group: AbstractMatrixGroup, A: Array, g: Poses) -> Covectors:
