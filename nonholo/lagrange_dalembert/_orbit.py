@@ -199,8 +199,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         if self.solution is None:
             got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
-            remedy = "Slice it; solve a flow from a file again."
-            raise error("Orbit.at(...)", "be called on a flow", got, remedy)
+            raise error("Orbit.at(...)", "be called on a flow", got, "Slice it; solve a flow from a file again.")
         return room("_flow").at(self, times)
 
     def labeled_rows(self) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:

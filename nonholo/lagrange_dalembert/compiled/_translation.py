@@ -267,8 +267,7 @@ def _places(
     corners[..., list(axes)] = indices
     for axis, along in zip(*batching, strict=True):
         corners[..., axis] = np.indices(batch)[along]
-    most = np.array(shape) - sizes
-    inside = np.clip(corners, 0, most)
+    inside = np.clip(corners, 0, np.array(shape) - sizes)
     if mode != GatherScatterMode.CLIP and not np.array_equal(inside, corners):
         raise UntranslatableError("an index out of bounds")
     offsets = np.moveaxis(np.indices(tuple(sizes)), 0, -1)
