@@ -102,8 +102,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
         xp = x.__array_namespace__()
         cos, sin = pose[..., 0], pose[..., 1]
         omega, v1, v2 = (x[..., i] for i in range(3))
-        rows = (-sin * omega, cos * omega, cos * v1 - sin * v2, sin * v1 + cos * v2)
-        return xp.stack(rows, axis=-1)
+        return xp.stack([-sin * omega, cos * omega, cos * v1 - sin * v2, sin * v1 + cos * v2], axis=-1)
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

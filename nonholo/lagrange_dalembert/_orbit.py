@@ -415,11 +415,6 @@ class RecordedSystem(AbstractCoordinateSystem):
             raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
         return self.record[name]
 
-    @property
-    def parameters(self) -> Mapping[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Numbers that its functions take."""
-        return self.record["parameters"]
-
     def parts(self, q: Any) -> tuple[()]:
         """Return no outline: it may be a function."""
         del q

@@ -281,8 +281,7 @@ class Expansion:
             else:
                 is_first = b.icmp_signed("==", self.before, _constant(0))
                 coefficient = b.select(is_first, b.fmul(unit, _constant(float(rate.value))), _constant(0.0))
-            row = b.add(b.mul(self.k, _constant(self.width)), _constant(m))
-            b.store(coefficient, b.gep(self.series, [row]))
+            b.store(coefficient, b.gep(self.series, [b.add(b.mul(self.k, _constant(self.width)), _constant(m))]))
             self._keep(x, coefficient, *map(_constant, self._row(x)))
 
     def _write_coefficient(self, x: Scalar, *row: Any) -> None:

@@ -65,10 +65,7 @@ def code_of(family: Any, what: tuple[Any, ...], write: Write, search: int = 1) -
         UntranslatableError: `write` cannot make formulas of it.
     """
     with compiling(SYSTEM, family, (family, what)):
-        folder, digest = cache_folder() / "formulas", _digest(family)
-        name = f"{hashlib.sha256(f'{digest} {what}'.encode()).hexdigest()}.o"
-        is_kept = digest is not None and folder.is_absolute()  # else each process makes it, or there is no home
-        return machine_code(write, folder / name if is_kept else None, search)
+        return machine_code(write, _file(family, what), search)
 
 
 def machine_code(write: Write, file: Path | None = None, search: int = 1) -> tuple[dict[str, int], Any]:
@@ -106,6 +103,14 @@ def _keep(file: Path | None, content: bytes) -> None:
             old.unlink()
     with contextlib.suppress(OSError):  # what a full disk leaves
         part.unlink(missing_ok=True)
+
+
+def _file(family: Any, what: tuple[Any, ...]) -> Path | None:
+    """Return the file of what is made of a family of systems; None if each process must make it, or without a home."""
+    folder, digest = cache_folder() / "formulas", _digest(family)
+    if digest is None or not folder.is_absolute():
+        return None
+    return folder / f"{hashlib.sha256(f'{digest} {what}'.encode()).hexdigest()}.o"
 
 
 @functools.lru_cache(maxsize=64)

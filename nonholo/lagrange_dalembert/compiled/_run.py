@@ -174,7 +174,6 @@ def advance(
         The good steps, the state there and the outcome.
     """
     body, count, total, code = _body(system, h, *state[:2]), 0, len(table[0]) * every, 0
-    most = 1 if body else ROWS
     while code == 0 and count < total:
         if body:
             flat = np.concatenate([x.ravel() for x in state])
@@ -182,7 +181,7 @@ def advance(
             ends = np.cumsum([body.place, body.velocity])
             state = flat[: ends[0]].reshape(state[0].shape), flat[ends[0] : ends[1]], flat[ends[1] :]
         if count < total:
-            good, state, code, columns = definition(state, sign, np.int64(min(most, total - count)))
+            good, state, code, columns = definition(state, sign, np.int64(min(1 if body else ROWS, total - count)))
             marks = np.arange(-count % every, good, every)
             for column, entries in zip(table, columns, strict=True):
                 column[(count + marks) // every] = entries[marks].reshape(len(marks), column.shape[1])

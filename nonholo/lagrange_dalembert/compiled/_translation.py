@@ -37,8 +37,7 @@ def translate(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np
         return _constants(f, atom.val) if hasattr(atom, "val") else values[atom]
 
     for step in jaxpr.eqns:
-        results = _applied(f, step, [read(atom) for atom in step.invars])
-        values |= dict(zip(step.outvars, results, strict=True))
+        values |= dict(zip(step.outvars, _applied(f, step, [read(atom) for atom in step.invars]), strict=True))
     return [read(atom) for atom in jaxpr.outvars]
 
 

@@ -302,8 +302,7 @@ def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
 def _plain(system: Any) -> Any:
     """Return a system whose numbers stand within its functions, pickled as such."""
     plain = system.bound(*system.parameters.values()) if system.parameters else system
-    recipe = vars(system).get("recipe")
-    if recipe and plain is not system:
+    if plain is not system and vars(system).get("recipe"):
         vars(plain)["recipe"] = (_plain, (system,))
     return plain
 

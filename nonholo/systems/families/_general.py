@@ -154,9 +154,7 @@ class LLSystem(AbstractLLSystem):
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
-        if self.mass_tensor is None:
-            return self.given_inertia
-        return super().inertia_operator
+        return self.given_inertia if self.mass_tensor is None else super().inertia_operator
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:

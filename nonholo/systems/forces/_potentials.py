@@ -86,8 +86,7 @@ def covector_of(group: AbstractMatrixGroup, A: Array, g: Poses) -> Covectors:
 def leaning(g: Poses, W: Poses) -> Poses:
     r"""Return $g(I + Y) = 2 g W(I + W)^{-1}$ with the Cayley matrix Y of displacements."""
     xp: Any = W.__array_namespace__()
-    one = xp.eye(W.shape[-1])
-    return g @ xp.linalg.solve(one + W, 2 * W)
+    return g @ xp.linalg.solve(xp.eye(W.shape[-1]) + W, 2 * W)
 
 
 def homogeneous(group: AbstractMatrixGroup, vector: Array, last: float) -> Array:
