@@ -63,6 +63,10 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
     is_forced: ClassVar[bool] = False
     """Whether it is a `Forced`; questions about free motions are then refused."""
+    normal_form: NormalForm | None = None
+    """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
+    forces: Any = None
+    """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
     has_blade: ClassVar[bool] = False
     """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
 
@@ -192,16 +196,6 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         """The factors of a matrix `inertia_along`; None of others, and of one that is not positive definite."""
         inertia = self.inertia_along
         return factors_of(inertia) if isinstance(inertia, np.ndarray) and not is_traced(inertia) else None
-
-    @functools.cached_property
-    def normal_form(self) -> NormalForm | None:
-        """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
-        return None
-
-    @property
-    def forces(self) -> Any:
-        """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
-        return None
 
     @property
     def inside(self) -> "AbstractSystem":
