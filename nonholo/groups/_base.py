@@ -259,19 +259,18 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     def form_adjoint(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... N N"]:
         r"""Return $X^* = G^{-1}X^TG$, the adjoint of a matrix in the form of the group; $X^T$ where there is none."""
         X = self._matrix(X, real=False)
-        xp = X.__array_namespace__()
-        transpose = xp.swapaxes(X, -1, -2)
         if self.form is None:
-            return transpose
+            return X.mT
+        xp = X.__array_namespace__()
         G, inverse = (xp.asarray(each, dtype=X.dtype) for each in (self.form, np.linalg.inv(self.form)))
-        return inverse @ transpose @ G
+        return inverse @ X.mT @ G
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""
         g = self._matrix(g)
         xp = g.__array_namespace__()
         images = g[..., None, :, :] @ xp.asarray(self.basis, dtype=g.dtype) @ self.inverse(g)[..., None, :, :]
-        return xp.swapaxes(self.vee(images), -1, -2)
+        return self.vee(images).mT
 
     def coadjoint(self, g: Float[Array, "... N N"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         r"""Return the plain transpose: $\langle\mathrm{Ad}^*_g p, x\rangle = \langle p, \mathrm{Ad}_g x\rangle$.
@@ -279,9 +278,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         For the matrix $P$ of the covector it is $g^TPg^{-T}$, on SO(n) $g^TPg$.
         """
         g, p = self._matrix(g), self._vector(p)
-        xp = g.__array_namespace__()
-        spatial = xp.swapaxes(g, -1, -2) @ self.coordinates.dual_matrix(p) @ xp.swapaxes(self.inverse(g), -1, -2)
-        return self.coordinates.dual_vector(spatial)
+        return self.coordinates.dual_vector(g.mT @ self.coordinates.dual_matrix(p) @ self.inverse(g).mT)
 
     def bracket(self, x: Float[Array, "... dim"], y: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the Lie bracket, in coordinates, of the matrix commutator."""
@@ -291,8 +288,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     def ad(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{ad}_x$: column i holds the coordinates of $[x, e_i]$."""
         x = self._vector(x)
-        xp = x.__array_namespace__()
-        return xp.swapaxes(self.bracket(x[..., None, :], xp.eye(self.dim, dtype=x.dtype)), -1, -2)
+        return self.bracket(x[..., None, :], x.__array_namespace__().eye(self.dim, dtype=x.dtype)).mT
 
     def coad(self, x: Float[Array, "... dim"], p: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         r"""Return the plain transpose: $\langle\mathrm{ad}^*_x p, y\rangle = \langle p, [x, y]\rangle$.
@@ -300,8 +296,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         For the matrix $P$ of the covector it is $[X^T, P]$, on so(n) $[P, X]$.
         """
         X, P = self.hat(x), self.coordinates.dual_matrix(self._vector(p))
-        transpose = X.__array_namespace__().swapaxes(X, -1, -2)
-        return self.coordinates.dual_vector(transpose @ P - P @ transpose)
+        return self.coordinates.dual_vector(X.mT @ P - P @ X.mT)
 
     def _vector(self, x: Array) -> Array:
         remedy = "Use `vee` to turn a matrix into coordinates."

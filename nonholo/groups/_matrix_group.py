@@ -188,26 +188,16 @@ def checked_basis(where: str, basis: Array) -> Float[np.ndarray, "dim N N"]:
     basis = array(where, basis, (None, None, None), "Pass the basis as an array of shape (dim, N, N).")
     if basis.shape[0] == 0 or basis.shape[1] != basis.shape[2]:
         raise error(where, "hold square matrices", f"shape {basis.shape}", "Pass an array of shape (dim, N, N).")
-    _check_independence(where, basis)
-    _check_closure(where, basis)
-    return array(where, basis + 0.0, basis.shape)  # without negative zeros: equal bases have equal bytes
-
-
-def _check_independence(where: str, basis: np.ndarray) -> None:
-    lengths = np.linalg.norm(basis, axis=(1, 2))
+    lengths = np.linalg.norm(basis, axis=(1, 2), keepdims=True)
     if not np.all(lengths > 0):
         got = f"a zero matrix at index {int(np.argmin(lengths))}"
         raise error(where, "be linearly independent", got, "Leave it out.")
-    rows = basis.reshape(len(basis), -1) / lengths[:, None]
-    values = np.linalg.svd(rows, compute_uv=False)
+    unit = basis / lengths
+    values = np.linalg.svd(unit.reshape(len(basis), -1), compute_uv=False)
     rank = int(np.sum(values > _CLOSED * values[0]))
     if rank < len(basis):
         got = f"{len(basis)} matrices of rank {rank}"
         raise error(where, "be linearly independent", got, "Leave out matrices that the others span.")
-
-
-def _check_closure(where: str, basis: np.ndarray) -> None:
-    unit = basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True)
     products = unit[:, None] @ unit[None]
     brackets = products - np.swapaxes(products, 0, 1)
     coordinates = coordinates_of(unit)
@@ -216,6 +206,7 @@ def _check_closure(where: str, basis: np.ndarray) -> None:
         i, j = (int(k) for k in np.unravel_index(gap.argmax(), gap.shape))
         got = f"the bracket of matrices {i} and {j}, which leaves the span by {gap[i, j]:.3g} (both scaled to length 1)"
         raise error(where, "span a Lie algebra", got, "Add the missing brackets to the basis, or check its entries.")
+    return array(where, basis + 0.0, basis.shape)  # without negative zeros: equal bases have equal bytes
 
 
 def checked_form(where: str, basis: Float[np.ndarray, "dim N N"], form: Array) -> Float[np.ndarray, "N N"]:
@@ -231,22 +222,13 @@ def checked_form(where: str, basis: Float[np.ndarray, "dim N N"], form: Array) -
         got = f"singular values from {values[0]:.3g} to {values[-1]:.3g}"
         raise error(where, "be nondegenerate", got, "Leave it out: without it W^-1 is not linear in W.")
     unit = basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True)
-    _check_preservation(where, unit, form / values[0])
-    _cubes_stay(where, unit)
-    return array(where, form + 0.0, form.shape)
-
-
-def _check_preservation(where: str, unit: np.ndarray, form: np.ndarray) -> None:
-    residuals = np.abs(np.swapaxes(unit, 1, 2) @ form + form @ unit).max(axis=(1, 2))
+    residuals = np.abs(unit.mT @ (form / values[0]) + (form / values[0]) @ unit).max(axis=(1, 2))
     if residuals.max() > _CLOSED:
         worst = int(residuals.argmax())
         got = f"a residual of {residuals[worst]:.3g} at matrix {worst} of the basis (both scaled to length 1)"
         raise error(where, "satisfy x^T G + G x = 0 on the algebra", got, "Pass the form that the group preserves.")
 
-
-def _cubes_stay(where: str, unit: np.ndarray) -> None:
-    """Refuse an algebra that some x^3 leaves; a polynomial identity, tried on random x."""
-    coordinates = coordinates_of(unit)
+    coordinates = coordinates_of(unit)  # that x^3 stays in the algebra is a polynomial identity, tried on random x
     X = coordinates.matrix(np.random.default_rng(0).normal(size=(4, len(unit))) / np.sqrt(len(unit)))
     cubes = X @ X @ X
     gap = np.abs(cubes - coordinates.matrix(coordinates.vector(cubes))).max()
@@ -254,3 +236,4 @@ def _cubes_stay(where: str, unit: np.ndarray) -> None:
         requirement = "be that of a group whose algebra contains (W - W^-1)/2"
         got = f"an algebra that a cube leaves by {gap / np.abs(cubes).max():.3g} of its size"
         raise error(where, requirement, got, "Pass the whole algebra of the form: U(p, q), not SU(p, q).")
+    return array(where, form + 0.0, form.shape)

@@ -97,10 +97,10 @@ def logarithm(R: Float[Array, "... n n"], where: str) -> Float[Array, "... n n"]
     if np.abs(flat[finite]).max(initial=0.0) > _ENTRY:
         got = f"an entry {np.abs(flat[finite]).max():g}"
         raise error(where, "be a rotation", got, "Use a rotation, built by `exp` or `cayley`.")
-    least_cosine = np.linalg.eigvalsh((flat[finite] + np.swapaxes(flat[finite], 1, 2)) / 2)[:, 0]
+    least_cosine = np.linalg.eigvalsh((flat[finite] + flat[finite].mT) / 2)[:, 0]
     moderate = finite[least_cosine > _MODERATE]
     K = inverse_cayley(flat[moderate])  # tan(angle / 2), to relative precision near the identity
-    result[moderate] = of_skew((K - np.swapaxes(K, -1, -2)) / 2, lambda tangent: 2j * np.arctan(tangent))
+    result[moderate] = of_skew((K - K.mT) / 2, lambda tangent: 2j * np.arctan(tangent))
     for k in finite[least_cosine <= _MODERATE]:
         result[k] = _schur_logarithm(flat[k], where)
     return result.reshape(R.shape)
@@ -110,8 +110,7 @@ def _schur_logarithm(R: np.ndarray, where: str) -> np.ndarray:
     """The real Schur form of a rotation has blocks of one or two rows; those of one row hold 1 or -1."""
     T, Z = scipy.linalg.schur(R, output="real")[:2]
     X, n = np.zeros_like(R), len(R)
-    is_pair = np.append(np.diag(T, -1) != 0, False)
-    first = np.flatnonzero(is_pair)
+    first = np.flatnonzero(np.diag(T, -1))  # rows of pairs
     cosine, sine = (T[first, first] + T[first + 1, first + 1]) / 2, (T[first + 1, first] - T[first, first + 1]) / 2
     X[first + 1, first] = np.arctan2(sine, cosine)
     alone = np.setdiff1d(np.arange(n), np.concatenate([first, first + 1]))
@@ -128,14 +127,14 @@ def nearest(R: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
     Two steps of Newton and Schulz: a defect d becomes about d**4.
     """
     for _ in range(2):
-        R = R @ (3 * identity_like(R) - R.__array_namespace__().swapaxes(R, -1, -2) @ R) / 2
+        R = R @ (3 * identity_like(R) - R.mT @ R) / 2
     return R
 
 
 def residual(R: Float[Array, "... n n"]) -> Float[Array, "..."]:
     """Return the largest entry of R R^T - I; for reflections at least 2, the distance of -1 from 1."""
     xp = R.__array_namespace__()
-    defect = xp.max(abs(R @ xp.swapaxes(R, -1, -2) - identity_like(R)), axis=(-2, -1))
+    defect = xp.max(abs(R @ R.mT - identity_like(R)), axis=(-2, -1))
     return xp.maximum(defect, 1 - xp.sign(xp.linalg.det(R)))
 
 

@@ -28,7 +28,7 @@ class AbstractMotions(AbstractMatrixGroup):
         """Return the inverse matrix from the transposed rotation."""
         g = self._matrix(g)
         xp = g.__array_namespace__()
-        transpose = xp.swapaxes(g[..., :-1, :-1], -1, -2)
+        transpose = g[..., :-1, :-1].mT
         upper = xp.concatenate([transpose, -(transpose @ g[..., :-1, -1:])], axis=-1)
         return xp.concatenate([upper, g[..., -1:, :]], axis=-2)
 
@@ -76,9 +76,8 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the matrix of (cos, sin, x, y); the heading is normalized first."""
-        pose = self._pose(pose)
-        xp = pose.__array_namespace__()
         unit = self.normalize_pose(pose)
+        xp = unit.__array_namespace__()
         cos, sin, x, y = (unit[..., i] for i in range(4))
         zero, one = xp.zeros_like(cos), xp.ones_like(cos)
         rows = ((cos, -sin, x), (sin, cos, y), (zero, zero, one))
@@ -103,8 +102,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
         xp = x.__array_namespace__()
         cos, sin = pose[..., 0], pose[..., 1]
         omega, v1, v2 = (x[..., i] for i in range(3))
-        rows = (-sin * omega, cos * omega, cos * v1 - sin * v2, sin * v1 + cos * v2)
-        return xp.stack(rows, axis=-1)
+        return xp.stack([-sin * omega, cos * omega, cos * v1 - sin * v2, sin * v1 + cos * v2], axis=-1)
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -119,11 +117,10 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
         """The maps between coordinate vectors and matrices of the algebra."""
-        rows, columns, values = _rotations.planes(self.n)
         axes, last = np.arange(self.n), np.full(self.n, self.n)
         moves = np.stack([axes, axes], axis=1), np.stack([last, last], axis=1), np.tile([1.0, 0.0], (self.n, 1))
-        turns = rows, columns, values
-        return SeparatedCoordinates(self.size, *(np.concatenate(pair) for pair in zip(turns, moves, strict=True)))
+        pairs = zip(_rotations.planes(self.n), moves, strict=True)
+        return SeparatedCoordinates(self.size, *map(np.concatenate, pairs))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         r"""Return `exp(x)` minus the identity: rotation $e^X - I$, position $\varphi_1(X)v$."""

@@ -78,8 +78,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
-        kind = room("_slipping").SlipStepper if self.system.slips else CoordinateStepper
-        return cast(Any, kind(self))
+        return cast(Any, room("_slipping").SlipStepper if self.system.slips else CoordinateStepper)(self)
 
     def stepper(self, *, with_poses: bool) -> AbstractStepper[OrbitT]:
         """Return what takes its steps."""

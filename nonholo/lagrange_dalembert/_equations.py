@@ -20,8 +20,7 @@ _CORRECTIONS = 8  # of a velocity, Newton's: one where L is quadratic, and const
 def _value_at(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
     """Return the value of a user's function at a place, with the time if it takes it."""
     time = (time_of(x),) if takes_time(function, 1 + len(velocity)) else ()
-    q = x[:-1] if system.is_driven else x
-    return jnp.asarray(function(q, *velocity, *time), dtype=x.dtype)
+    return jnp.asarray(function(x[:-1] if system.is_driven else x, *velocity, *time), dtype=x.dtype)
 
 
 def time_of(x: Array) -> Array:
@@ -46,8 +45,7 @@ def place_residual(system: LagrangeDAlembert, x: Array) -> Array:
 
 def holonomic_residual(system: LagrangeDAlembert, x: Array) -> Array:
     r"""Return $\Phi$ in the rows of all constraints; the others have zero."""
-    others = system.velocity_constraints, len(system.prescribed)
-    return jnp.pad(holonomic(system, x), others)
+    return jnp.pad(holonomic(system, x), (system.velocity_constraints, len(system.prescribed)))
 
 
 def forms(system: LagrangeDAlembert, x: Array) -> Array:
@@ -93,9 +91,16 @@ def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array
 
     Holonomic constraints hold at the end of the step, prescribed coordinates move by exactly what is prescribed.
     """
-    steps = (v[i : i + 1] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed)
+    places = system.places
+    if system.discrete_constraints is not None:
+        own = jnp.asarray(system.discrete_constraints(*places.ends(x, places.step(v, h), h), h))
+    elif system.rule == "midpoint":
+        own = _velocity_constraint(system, places.ahead(x, v, h / 2), v)
+    else:
+        own = (_velocity_constraint(system, x, v) + _velocity_constraint(system, places.ahead(x, v, h), v)) / 2
     at_end = [] if system.holonomic is None else [holonomic(system, system.places.ahead(x, v, h)) / h]
-    return jnp.concatenate([_discrete_velocity_constraint(system, x, v, h), *at_end, *steps])
+    steps = (v[i : i + 1] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed)
+    return jnp.concatenate([own, *at_end, *steps])
 
 
 def constraint_of(system: LagrangeDAlembert, h: Array | None, x: Array, v: Array) -> Array:
@@ -111,15 +116,6 @@ def corrected_velocity(system: LagrangeDAlembert, h: Array | None, x: Array, v: 
         return w - jnp.linalg.pinv(slope) @ constraint_of(system, h, x, w)
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)
-
-
-def _discrete_velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
-    places = system.places
-    if system.discrete_constraints is not None:
-        return jnp.asarray(system.discrete_constraints(*places.ends(x, places.step(v, h), h), h))
-    if system.rule == "midpoint":
-        return _velocity_constraint(system, places.ahead(x, v, h / 2), v)
-    return (_velocity_constraint(system, x, v) + _velocity_constraint(system, places.ahead(x, v, h), v)) / 2
 
 
 def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
@@ -241,10 +237,8 @@ def bordered_matrix(mass: Array, right: Array, below: Array, kinetic: Array) -> 
     unit = 1 / jnp.sqrt(jnp.where(jnp.diag(kinetic) == 0, 1.0, jnp.abs(jnp.diag(kinetic))))
     lengths = [jnp.sqrt(jnp.sum((rows * unit) ** 2, axis=1)) for rows in (right, below)]
     a, f = (jnp.where(length == 0, 1.0, length) for length in lengths)
-    s = right.shape[0]
-    corner = jnp.zeros((s, s))
     upper = jnp.concatenate([mass * unit * unit[:, None], -(right * unit).T / a], axis=1)
-    lower = jnp.concatenate([below * unit / f[:, None], corner], axis=1)
+    lower = jnp.concatenate([below * unit / f[:, None], jnp.zeros((len(right), len(right)))], axis=1)
     return jnp.concatenate([upper, lower]), Scaled(unit, a, f)
 
 

@@ -92,8 +92,7 @@ def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Fl
     def one(row: Array) -> Array:
         q, v = jnp.split(row, [int(np.prod(pose))])
         x = place(system, q.reshape(pose), time)
-        place_rate = jnp.ravel(system.places.rate(x, v))[: len(q)]
-        return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
+        return jnp.concatenate([jnp.ravel(system.places.rate(x, v))[: len(q)], acceleration(system, x, v)[0]])
 
     return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)
 

@@ -211,8 +211,7 @@ def mass_tensor_lagrangian(
     """
     checked_group("mass_tensor_lagrangian(group=...)", group)
     where, instead = "mass_tensor_lagrangian(mass_tensor=...)", "Write your own discrete Lagrangian."
-    tensor = group_mass_tensor(where, group, mass_tensor, instead)
-    return functools.partial(_mass_tensor_action, group, tensor)
+    return functools.partial(_mass_tensor_action, group, group_mass_tensor(where, group, mass_tensor, instead))
 
 
 def _mass_tensor_action(group: AbstractMatrixGroup, tensor: np.ndarray, W: Array, time_step: Array) -> Array:

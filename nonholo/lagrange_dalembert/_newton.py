@@ -168,9 +168,8 @@ def root(system: Equations, near: Array, guess: Array, sign: Array) -> tuple[Arr
         )
 
     zero, one, no = jnp.zeros(()), jnp.ones(()), jnp.asarray(False)
-    start = Root(near, none, no, zero, one)
-    path_start = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
-    path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, path_start)
+    start = _Path(jnp.asarray(0), zero, 0.25 * one, Root(near, none, no, zero, one), one, no)
+    path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, start)
     finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
     singular = path.root.regularity < SINGULAR
     is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular

@@ -199,8 +199,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         if self.solution is None:
             got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
-            remedy = "Slice it; solve a flow from a file again."
-            raise error("Orbit.at(...)", "be called on a flow", got, remedy)
+            raise error("Orbit.at(...)", "be called on a flow", got, "Slice it; solve a flow from a file again.")
         return room("_flow").at(self, times)
 
     def labeled_rows(self) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
@@ -415,11 +414,6 @@ class RecordedSystem(AbstractCoordinateSystem):
             remedy = "Pass the one that made the store to load_orbit, resume or extend: discrete=..."
             raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
         return self.record[name]
-
-    @property
-    def parameters(self) -> Mapping[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Numbers that its functions take."""
-        return self.record["parameters"]
 
     def parts(self, q: Any) -> tuple[()]:
         """Return no outline: it may be a function."""

@@ -186,8 +186,7 @@ class SlipStepper(AbstractStepper[Any]):
         else:
             p = p - self._across(holds, end, p) @ own
         beginning = self.begin(end, p, v, run) if code == 0 else (code, v, j, holds, None)
-        leaving = self._ask(_ends, h, end, beginning[1])[0]
-        impulses[:] = np.linalg.lstsq(forms.T, leaving - arriving)[0]
+        impulses[:] = np.linalg.lstsq(forms.T, self._ask(_ends, h, end, beginning[1])[0] - arriving)[0]
         return self._state(end, p, beginning), int(beginning[0])
 
     def _state(self, x: np.ndarray, p: np.ndarray, beginning: Beginning) -> State:
@@ -206,8 +205,7 @@ class SlipStepper(AbstractStepper[Any]):
         """Return rows as an orbit."""
         (q, v, p, impulses), system = rows, self.motion.system
         orbit = self.stepper_of(*[False] * len(self.slips)).orbit((q, v, impulses), step, every, outcome)
-        places = q.reshape(-1, *system.place_shape)
-        energy = in_blocks(_energy, system.free, places, p)[0]
+        energy = in_blocks(_energy, system.free, q.reshape(-1, *system.place_shape), p)[0]
         return dataclasses.replace(orbit, system=system, momentum=p, energy=energy)
 
 

@@ -62,31 +62,26 @@ def _reach(x: np.ndarray, units: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n
 
 
 def _check_place(where: str, system: Any, x: np.ndarray, along: tuple[np.ndarray, np.ndarray]) -> None:
-    """Refuse a place that prescribed motions or holonomic constraints do not allow."""
-    for index, motion in system.plain.prescribed:
-        with double_precision():
-            target = float(motion(x[-1]))
-        if not abs(x[index] - target) <= _TOLERANCE * (along[1][index] + abs(target)):
-            got, remedy = f"{x[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
-            raise error(where, "agree with prescribed motions", got, remedy)
-    if system.holonomic is not None:
-        _check_holonomic(where, system, x, along)
-
-
-def _check_holonomic(where: str, system: Any, x: np.ndarray, along: tuple[np.ndarray, np.ndarray]) -> None:
-    """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do.
+    """Refuse a place that prescribed motions or holonomic constraints do not allow, with the nearest one that they do.
 
     Where a surface is curved its radius measures the place, too.
     """
-    (A, reach), n, residual = along, system.dimension, in_double(equations.holonomic_residual, system, x)
-    bend = np.abs(in_double(_bend, system, x))
-    reach = np.minimum(reach, np.divide(np.abs(A), bend, out=np.full_like(bend, np.inf), where=bend > 0))
-    if np.all(np.abs(residual) <= _TOLERANCE * (np.abs(A) * (np.abs(x[:n]) + reach)).sum(axis=1)):
+    (A, reach), n = along, system.dimension
+    for index, motion in system.plain.prescribed:
+        with double_precision():
+            target = float(motion(x[-1]))
+        if not abs(x[index] - target) <= _TOLERANCE * (reach[index] + abs(target)):
+            got, remedy = f"{x[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
+            raise error(where, "agree with prescribed motions", got, remedy)
+    if system.holonomic is None:
         return
-    nearest = in_double(nearest_place, system, x)[:n]
-    got = f"residual {np.array2string(in_double(equations.holonomic, system, x), precision=6)}"
-    remedy = "Start elsewhere." if np.isnan(nearest).any() else f"The nearest admissible one is {nearest.tolist()}."
-    raise error(where, "satisfy the holonomic constraints", got, remedy)
+    residual, bend = (np.abs(in_double(each, system, x)) for each in (equations.holonomic_residual, _bend))
+    reach = np.minimum(reach, np.divide(np.abs(A), bend, out=np.full_like(bend, np.inf), where=bend > 0))
+    if not np.all(residual <= _TOLERANCE * (np.abs(A) * (np.abs(x[:n]) + reach)).sum(axis=1)):
+        nearest = in_double(nearest_place, system, x)[:n]
+        got = f"residual {np.array2string(in_double(equations.holonomic, system, x), precision=6)}"
+        remedy = "Start elsewhere." if np.isnan(nearest).any() else f"The nearest admissible one is {nearest.tolist()}."
+        raise error(where, "satisfy the holonomic constraints", got, remedy)
 
 
 def _check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
@@ -110,8 +105,7 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
     most = _TOLERANCE / h * np.abs(slope) @ _reach(q, units)
     if not np.all(np.isfinite(at_rest)) or np.any(np.abs(at_rest) > most):
         raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
-    directions = np.linalg.svd(A)[2][len(A) :]
-    span_gap = np.abs(slope @ directions.T)
+    span_gap = np.abs(slope @ np.linalg.svd(A)[2][len(A) :].T)
     if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
         got = f"derivatives {slope.tolist()} beside the forms {A.tolist()} at {q.tolist()}"
         remedy = "Discretize the same forms, or change the forms."
@@ -149,20 +143,14 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarra
     if not least > _DEGENERATE:
         got = f"least singular value {least:.3g} of the equations at {q.tolist()}, velocity {v.tolist()}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
-    if system.has_limit and np.any(v):
-        _check_limit(system, q, v, gradients[1])
+    if system.has_limit and np.any(v):  # a discrete Lagrangian is about h times the Lagrangian in short steps
+        h, limit = _SMALL / np.linalg.norm(v), gradients[1]
+        p = np.mean(_at(equations.momenta, system, q, v, h), axis=0)
+        if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
+            got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"
+            remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
+            raise error(_argument(system, "discrete_lagrangian"), "tend to time_step times the Lagrangian", got, remedy)
     return gradients[1], units, A, residual
-
-
-def _check_limit(system: Any, q: np.ndarray, v: np.ndarray, limit: np.ndarray) -> None:
-    """Refuse a discrete Lagrangian that is not about h times the Lagrangian in short steps."""
-    h = _SMALL / np.linalg.norm(v)
-    p = np.mean(_at(equations.momenta, system, q, v, h), axis=0)
-    if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
-        got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"
-        remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
-        where = _argument(system, "discrete_lagrangian")
-        raise error(where, "tend to time_step times the Lagrangian", got, remedy)
 
 
 def of_momentum(owner: str, system: Any, q: np.ndarray, value: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

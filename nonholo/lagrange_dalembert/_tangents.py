@@ -38,8 +38,7 @@ def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[n
     if motion.time_step is None:
         return x, v
     h = np.float64(motion.time_step)
-    p = room("_start").momentum(system, x, v)
-    (_, v, _), _, code = in_double(set_out, system, h, x, v, p)
+    (_, v, _), _, code = in_double(set_out, system, h, x, v, room("_start").momentum(system, x, v))
     return x, np.where(code == 0, v, np.nan)
 
 

@@ -63,6 +63,10 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
     is_forced: ClassVar[bool] = False
     """Whether it is a `Forced`; questions about free motions are then refused."""
+    normal_form: NormalForm | None = None
+    """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
+    forces: Any = None
+    """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
     has_blade: ClassVar[bool] = False
     """Whether the last row of the constraint subspace is the velocity along a blade, at its point of contact."""
 
@@ -118,7 +122,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         if J is None or not self.group.is_rigid:
             return np.asarray(False)
         eigenvalues = np.linalg.eigvalsh(J)
-        is_symmetric = (J.swapaxes(-1, -2) == J).all(axis=(-2, -1))
+        is_symmetric = (J.mT == J).all(axis=(-2, -1))
         return np.asarray(is_symmetric & (eigenvalues[..., 0] > 1e-12 * eigenvalues[..., -1]))
 
     @system_memo
@@ -153,7 +157,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         if self.canonical is self:
             within_memory("The frame map of a body", 8.0 * self.rank**2, "Take a smaller n.")
             return np.eye(self.rank)
-        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).swapaxes(-1, -2)
+        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).mT
         return images @ np.linalg.pinv(self.constraint_subspace)
 
     @system_memo
@@ -192,16 +196,6 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
         """The factors of a matrix `inertia_along`; None of others, and of one that is not positive definite."""
         inertia = self.inertia_along
         return factors_of(inertia) if isinstance(inertia, np.ndarray) and not is_traced(inertia) else None
-
-    @functools.cached_property
-    def normal_form(self) -> NormalForm | None:
-        """The top or sleigh that the system is, in the axes of its constraint; None if it is neither."""
-        return None
-
-    @property
-    def forces(self) -> Any:
-        """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
-        return None
 
     @property
     def inside(self) -> "AbstractSystem":
@@ -327,7 +321,7 @@ class AbstractSystem(AbstractTree, Keeper, abc.ABC):
     def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
         """Return the momenta of `restricted_momentum` for velocities that are checked."""
         form = self.inertia_along
-        return form.momenta(velocity) if isinstance(form, WideInertia) else applied(form.swapaxes(-1, -2), velocity)
+        return form.momenta(velocity) if isinstance(form, WideInertia) else applied(form.mT, velocity)
 
     def constrained_energy(
         self, momentum: Covectors | Along, configuration: Poses | None = None
@@ -450,11 +444,11 @@ class AbstractLRSystem(AbstractSystem):
                    [0., 5.]])
         """
         g = self._at(configuration)
-        xp, rows, mass_tensor = g.__array_namespace__(), self.constraint_subspace, self.homogeneous_mass_tensor
+        rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is not None:
-            return _mass.inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ xp.swapaxes(g, -1, -2))
-        images = rows @ xp.swapaxes(self.group.adjoint(self.group.inverse(g)), -1, -2)
-        return images @ self.inertia_operator @ xp.swapaxes(images, -1, -2)
+            return _mass.inertia_form(self.group, self.group.hat(rows), g @ mass_tensor @ g.mT)
+        images = rows @ self.group.adjoint(self.group.inverse(g)).mT
+        return images @ self.inertia_operator @ images.mT
 
     def _at(self, configuration: Array | None) -> Array:
         where, remedy = f"{type(self).__name__} (configuration=...)", "Pass the matrix of a pose."
@@ -498,7 +492,7 @@ class AbstractLRSystem(AbstractSystem):
     def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
         inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)
-        return applied(inertia.swapaxes(-1, -2), velocity)
+        return applied(inertia.mT, velocity)
 
 
 System = AbstractSystem

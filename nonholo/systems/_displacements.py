@@ -38,7 +38,7 @@ def trace_constraints(
     R = trailing("trace_constraints(configuration=...)", configuration, (n, n), "Pass a matrix of SO(n).", real=True)
     where, remedy = "trace_constraints(configuration_next=...)", "Pass a matrix of the same SO(n)."
     R_next = trailing(where, configuration_next, (n, n), remedy, real=True)
-    W = R.__array_namespace__().swapaxes(R, -1, -2) @ R_next
+    W = R.mT @ R_next
     i, j = np.triu_indices(W.shape[-1] - 1, 1)
     return W[..., j, i] - W[..., i, j]
 
@@ -71,9 +71,8 @@ def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9
     W = trailing(where, displacement, (n, n), "Pass W of SO(n).", real=True)
     tolerance = positive("in_exp_d(tolerance=...)", tolerance, "Pass a positive error.")
     reflection = np.append(np.ones(n - 1), -1.0)[:, None] * W
-    transpose = np.swapaxes(reflection, -1, -2)
-    asymmetry = np.abs(reflection - transpose).max(axis=(-2, -1))
-    defect = np.abs(reflection @ transpose - np.eye(n)).max(axis=(-2, -1))
+    asymmetry = np.abs(reflection - reflection.mT).max(axis=(-2, -1))
+    defect = np.abs(reflection @ reflection.mT - np.eye(n)).max(axis=(-2, -1))
     trace = np.abs(np.trace(reflection, axis1=-2, axis2=-1) - (n - 2))
     return (asymmetry <= tolerance) & (defect <= tolerance) & (trace <= n * tolerance)
 

@@ -21,7 +21,6 @@ from nonholo.base.checks import array, error
 from nonholo.base.numerics import real_eigenspaces
 from nonholo.base.results import result
 from nonholo.base.types import Float
-from nonholo.systems._normal_form import NormalForm
 
 if TYPE_CHECKING:
     from nonholo.systems._base import AbstractLLSystem
@@ -89,22 +88,18 @@ class QuadraticField(NamedTuple):
 def quadratic_field(system: "AbstractLLSystem") -> QuadraticField:
     """Return the reduced equations of a system."""
     inertia, group = np.asarray(system.inertia_operator), system.group
-    rows, signs = _orthonormal(system, inertia)
+    rows = system.constraint_subspace
+    units = np.sqrt(np.einsum("ad,de,ae->a", np.abs(rows), np.abs(inertia), np.abs(rows)))  # rows may mix lengths
+    values, axes = np.linalg.eigh(np.asarray(system.constrained_inertia) / units / units[:, None])
+    axes[:, -1:] *= np.sign(np.linalg.det(axes))  # oriented as the rows of the system
+    rows, signs = (axes / np.sqrt(np.abs(values))).T @ (rows / units[:, None]), np.sign(values)
+
     tensor = np.einsum("ad,bmd->abm", rows @ inertia, group.bracket(rows[:, None, :], rows[None, :, :]))
     momenta = np.abs(group.coordinates.dual_matrix(np.abs(rows) @ np.abs(inertia)))
     velocities = np.abs(group.hat(rows))
     products = velocities[:, None] @ velocities[None, :]
     terms = np.einsum("aij,bmij->abm", momenta, products + products.swapaxes(0, 1))
     return QuadraticField(rows, signs, tensor, _ROUNDING * float(terms.max(initial=0.0)))
-
-
-def _orthonormal(system: "AbstractLLSystem", inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return rows that are orthonormal for the energy, oriented as the system's, and the signs of their energy."""
-    rows = system.constraint_subspace
-    units = np.sqrt(np.einsum("ad,de,ae->a", np.abs(rows), np.abs(inertia), np.abs(rows)))  # rows may mix lengths
-    values, axes = np.linalg.eigh(np.asarray(system.constrained_inertia) / units / units[:, None])
-    axes[:, -1:] *= np.sign(np.linalg.det(axes))
-    return (axes / np.sqrt(np.abs(values))).T @ (rows / units[:, None]), np.sign(values)
 
 
 @result
@@ -129,10 +124,8 @@ class Equilibria:
 def equilibria_of(system: "AbstractLLSystem") -> Equilibria:
     """Return the constant body velocities of a system, and the attracting half."""
     form = system.normal_form
-    return _of_field(system, quadratic_field(system)) if form is None else _of_form(system, form)
-
-
-def _of_form(system: "AbstractLLSystem", form: NormalForm) -> Equilibria:
+    if form is None:
+        return _of_field(system, quadratic_field(system))
     rows = system.form_map @ system.constraint_subspace
     if form.arm != 0:  # 0 of tops
         return Equilibria(rows[-1:], np.copysign(1.0, form.arm) * rows[-1])

@@ -167,13 +167,10 @@ def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tenso
     A body that moves with the velocity $\xi$, a matrix, has kinetic energy $\tfrac12\mathrm{tr}(\xi\mathbb{J}\xi^*)$;
     the star is the transpose but for a group with a form (`AbstractMatrixGroup.form_adjoint`).
     """
-    xp = mass_tensor.__array_namespace__()
-    matrices = xp.asarray(matrices)
-    duals = xp.swapaxes(group.form_adjoint(matrices), -1, -2)
-    size = matrices.shape[-1]
-    momenta = matrices @ mass_tensor[..., None, :, :]
-    flat = xp.reshape(momenta, (*momenta.shape[:-2], size * size))
-    return flat @ xp.reshape(duals, (-1, size * size)).T
+    matrices = mass_tensor.__array_namespace__().asarray(matrices)
+    entries, momenta = matrices.shape[-1] ** 2, matrices @ mass_tensor[..., None, :, :]
+    duals = group.form_adjoint(matrices).mT.reshape(-1, entries)
+    return momenta.reshape(*momenta.shape[:-2], entries) @ duals.T
 
 
 def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Tensor) -> Float[Array, "... dim dim"]:
@@ -271,20 +268,17 @@ def mass_tensor_of_body(owner: str, mass: Any, inertia: Any, center_of_mass: Any
                [1. , 0. , 2. ]])
     """
     where = f"{owner}.from_inertia(group=...)"
-    space = _space(checked_group(where, group))
-    if space is None:
+    if not _has_inertia_tensor(checked_group(where, group)):
         remedy = "Elsewhere pass a mass tensor to the class itself: about the origin it is J_C + m a a^T."
         raise error(where, "be SO(2), SO(3), SE(2) or SE(3), where inertia tensors are", shown(group), remedy)
-    n, slides = space
+    n, slides = group.point_size, group.is_affine
     m = scale(f"{owner}.from_inertia(mass=...)", mass, "Pass the mass of the body.")
     remedy = f"Pass {n} body coordinates, from the {'reference' if slides else 'fixed'} point."
     a = array(f"{owner}.from_inertia(center_of_mass=...)", center_of_mass, (n,), remedy)
     tensor = _about_center(f"{owner}.from_inertia(inertia=...)", inertia, n)
     xp = (m * a @ tensor).__array_namespace__()
     a, tensor = xp.asarray(a), xp.asarray(tensor)
-    if not slides:
-        return tensor + m * a[:, None] * a
-    return with_mass(tensor, m, a)
+    return with_mass(tensor, m, a) if slides else tensor + m * a[:, None] * a
 
 
 def with_mass(tensor: Float[Array, "k k"], mass: Array, center: Float[Array, "k"]) -> Float[Array, "k+1 k+1"]:
@@ -320,10 +314,10 @@ def tensors_shown(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) 
         >>> list(tensors_shown(SE(2), np.diag([1.0, 2.0, 2.0])).values())[1:]
         [array(2.), array([0., 0.]), array(3.)]
     """
-    J, space = np.asarray(mass_tensor), _space(group)
-    if space is None:
+    J = np.asarray(mass_tensor)
+    if not _has_inertia_tensor(group):
         return {"mass tensor J": J}
-    if not space[1]:
+    if not group.is_affine:
         return {"mass tensor J": J, "inertia tensor tr(J) I - J": _inertia(J)}
     facts = {"homogeneous mass tensor J": J}
     if J[-1, -1] > 0:
@@ -343,13 +337,9 @@ def _inertia(J: np.ndarray) -> np.ndarray:
     return np.asarray(np.trace(J)) if len(J) == 2 else inertia_tensor(J)
 
 
-def _space(group: AbstractMatrixGroup) -> tuple[int, bool] | None:
-    """Return the dimension of space, 2 or 3, and whether bodies move in it or turn about a point; None elsewhere."""
-    if not group.is_rigid or group.size > 4:
-        return None
-    slides = not np.any(group.basis[:, -1])
-    n = group.size - int(slides)
-    return (n, slides) if n in (2, 3) else None
+def _has_inertia_tensor(group: AbstractMatrixGroup) -> bool:
+    """Return whether a body moves in the plane or in space, or turns there about a point."""
+    return group.is_rigid and group.size <= 4 and group.point_size <= 3
 
 
 def _about_center(where: str, inertia: Any, n: int) -> Array:

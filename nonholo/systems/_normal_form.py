@@ -159,13 +159,10 @@ def sleigh_form(mass: Array, center_of_mass: Float[Array, "... n"], mass_tensor:
 def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
     """Return the form of a system with a mass tensor, in any axes; None if it has none."""
     tensor, group = system.homogeneous_mass_tensor, system.group
-    if tensor is None or is_traced(tensor):
+    if tensor is None or is_traced(tensor) or not group.is_rigid or group.size < 3:
         return None
-    if group.is_rigid and group == SO(group.size) and group.size > 2:
-        return _recognized_top(system, np.asarray(tensor))
-    if group.is_rigid and group.size > 2 and group == SE(group.size - 1):
-        return _recognized_sleigh(system, np.asarray(tensor))
-    return None
+    recognize = {SO(group.size): _recognized_top, SE(group.size - 1): _recognized_sleigh}.get(group)
+    return recognize and recognize(system, np.asarray(tensor))
 
 
 def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
@@ -178,8 +175,7 @@ def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalFor
         return None
     turn = _rotation(np.eye(n)[-1], axis)
     in_axes = turn.T @ tensor @ turn
-    form = top_form((in_axes + in_axes.swapaxes(-1, -2)) / 2)
-    return _seen_from(system, form, turn, top_rows(system.group))
+    return _seen_from(system, top_form((in_axes + in_axes.mT) / 2), turn, top_rows(system.group))
 
 
 def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
@@ -187,8 +183,7 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
     if len(rows) != n:
         return None
     velocities = system.group.hat(rows)
-    spins = velocities[:, :n, :n].reshape(n, -1)
-    left, sizes, _ = np.linalg.svd(spins)
+    left, sizes, _ = np.linalg.svd(velocities[:, :n, :n].reshape(n, -1))
     if sizes[-1] > _ROUNDING * sizes[0] or sizes[-2] <= _ROUNDING * sizes[0]:
         return None
     along = left[:, -1] @ velocities[:, :n, n]  # the one velocity without rotation
@@ -208,7 +203,7 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
     frame[..., :n, n] = center - arm * axis  # the contact point beside the center of mass
     moments = mass[..., None, None] * center[..., :, None] * center[..., None, :]
     about = turn.T @ (tensor[..., :-1, :-1] - moments) @ turn
-    form = sleigh_form(mass, turn.T @ axis * arm, (about + about.swapaxes(-1, -2)) / 2)
+    form = sleigh_form(mass, turn.T @ axis * arm, (about + about.mT) / 2)
     if n == 2:  # in the plane the moment of inertia is all that counts
         form = dataclasses.replace(form, coupling=np.zeros_like(form.coupling))
     return _seen_from(system, form, frame, sleigh_rows(system.group))
@@ -234,5 +229,5 @@ def _seen_from(
     own = None if np.all(frame == system.group.identity) else frame
     if own is None and np.array_equal(rows, system.constraint_subspace):
         return form
-    images = rows @ system.group.adjoint(frame).swapaxes(-1, -2)
+    images = rows @ system.group.adjoint(frame).mT
     return dataclasses.replace(form, frame=own, frame_map=images @ np.linalg.pinv(system.constraint_subspace))

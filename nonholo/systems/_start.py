@@ -135,7 +135,12 @@ def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
     along = system.components_along(momentum, g)
     if start.project:
         return of_finite_energy(start.owner, system, g, along)
-    _check_admissible(start.where, system, g, velocity)
+
+    frame_velocity = system.constraint_velocity(velocity, g)
+    forbidden = system.annihilator.dot(frame_velocity)
+    if any(forbidden.tolist()) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
+        nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
+        raise inadmissible(start.where, forbidden, np.linalg.solve(system.carried(g), nearest))
     return of_finite_energy(start.owner, system, g, along, (momentum, velocity))
 
 
@@ -146,11 +151,3 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
 
 
 _ALONG = {"momentum": _of_momentum, "body_velocity": _of_velocity, "restricted_velocity": _of_coordinates}
-
-
-def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:
-    frame_velocity = system.constraint_velocity(velocity, g)
-    forbidden = system.annihilator.dot(frame_velocity)
-    if any(forbidden.tolist()) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
-        nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
-        raise inadmissible(where, forbidden, np.linalg.solve(system.carried(g), nearest))

@@ -210,9 +210,10 @@ def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -
     """
     checked_group("is_symmetric_pair(group=...)", group)
     within_memory("is_symmetric_pair(group=...)", 8.0 * group.dim**3, "Use a smaller group.")
-    where = "is_symmetric_pair(constraint_subspace=...)"
-    d = row_space(independent_rows(where, constraint_subspace, group.dim))
-    constants, everything = _structure_constants(group), np.eye(group.dim)
+    d = row_space(independent_rows("is_symmetric_pair(constraint_subspace=...)", constraint_subspace, group.dim))
+    everything = np.eye(group.dim)
+    constants = group.bracket(everything[:, None, :], everything[None, :, :])
+    constants = constants / max(np.abs(constants).max(initial=0.0), np.finfo(np.float64).tiny)  # a factor is free
     escape = _significant(_brackets(constants, everything, d) @ null_space(d).T)
     normalizer = null_space(escape.reshape(group.dim, escape[0].size).T, _RANK)
     commutators = row_space(_significant(_brackets(constants, d, d)).reshape(-1, group.dim), _RANK)
@@ -238,29 +239,17 @@ def _subalgebra(
     parts = _significant(_brackets(constants, start, start) @ coordinates)
     along, omega = parts[..., : len(start)], parts[..., len(start) :]
     action = _significant(_brackets(constants, start, overlap) @ coordinates)[..., len(start) :]  # [x_i, e_a] in e
-    matrix, target = _conditions(along, omega, action, len(commutators))
+
+    unit_h, unit_e = np.eye(len(start)), np.eye(len(overlap))  # phi has h rows and e columns, which are flattened
+    system = np.einsum("ijl,ac->ijcla", along, unit_e)
+    system = system - np.einsum("jl,iac->ijcla", unit_h, action) + np.einsum("il,jac->ijcla", unit_h, action)
+    zero = np.einsum("fl,ac->fcla", unit_h[: len(commutators)], unit_e)
+    matrix = np.concatenate([each.reshape(-1, len(start) * len(overlap)) for each in (system, zero)])
+    target = np.concatenate([omega.ravel(), np.zeros(len(commutators) * len(overlap))])
     phi = np.linalg.lstsq(matrix, target, rcond=_RANK)[0]
     residual = np.abs(matrix @ phi - target).max(initial=0.0)
     graph = start + phi.reshape(len(start), len(overlap)) @ overlap
     return graph if residual <= 1e3 * _RANK * (1 + np.abs(phi).max(initial=0.0)) else None
-
-
-def _conditions(along: np.ndarray, omega: np.ndarray, action: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the linear system of phi (h rows, e columns, flattened) and its right-hand side."""
-    h, e = action.shape[:2]
-    unit_h, unit_e = np.eye(h), np.eye(e)
-    system = np.einsum("ijl,ac->ijcla", along, unit_e)
-    system = system - np.einsum("jl,iac->ijcla", unit_h, action) + np.einsum("il,jac->ijcla", unit_h, action)
-    zero = np.einsum("fl,ac->fcla", unit_h[:count], unit_e)
-    matrix = np.concatenate([system.reshape(-1, h * e), zero.reshape(-1, h * e)])
-    return matrix, np.concatenate([omega.ravel(), np.zeros(count * e)])
-
-
-def _structure_constants(group: AbstractMatrixGroup) -> Float[np.ndarray, "dim dim dim"]:
-    """Return the brackets of the basis; a common factor does not matter here, so the largest is made 1."""
-    basis = np.eye(group.dim)
-    constants = group.bracket(basis[:, None, :], basis[None, :, :])
-    return constants / max(np.abs(constants).max(initial=0.0), np.finfo(np.float64).tiny)
 
 
 def _brackets(constants: np.ndarray, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:

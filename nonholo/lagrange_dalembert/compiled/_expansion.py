@@ -91,8 +91,7 @@ class Elimination:
             lower: list[Scalar] = []
             products: list[Scalar] = []
             for i in range(j + 1):
-                before = self.lower[i] if i < j else lower
-                products.append(self._less(row[i], products, before))
+                products.append(self._less(row[i], products, self.lower[i] if i < j else lower))
                 if i < j:
                     lower.append(self._quotient(products[i], self.pivots[i]))
             if products[j].value == 0:
@@ -124,8 +123,7 @@ class Elimination:
 def bordered_elimination(f: Formulas, mass: Any, rows: Any) -> Elimination:
     """Return the elimination of the matrix of kinetic energy bordered by rows of constraints."""
     below = [[*row, *[f.constant(0.0)] * len(rows)] for row in rows]
-    above = [[*row, *(each[i] for each in rows)] for i, row in enumerate(mass)]
-    return Elimination(f, [*above, *below])
+    return Elimination(f, [*([*row, *(each[i] for each in rows)] for i, row in enumerate(mass)), *below])
 
 
 ORDERS = 48
@@ -174,8 +172,7 @@ class Expansion:
         An order is a separate function, which a loop calls.
         """
         pointer, self.width = DOUBLE.as_pointer(), width
-        kind = ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD])
-        function = ir.Function(module, kind, name)
+        function = ir.Function(module, ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD]), name)
         _, self.first, self.series, _, _, last = function.args
         self.table = self._table(module, f"{name}.table") if len(self.order) >= _MANY else None
         self.dot = _dot(module, f"{name}.dot", "alwaysinline" if self.table else "noinline")
@@ -284,8 +281,7 @@ class Expansion:
             else:
                 is_first = b.icmp_signed("==", self.before, _constant(0))
                 coefficient = b.select(is_first, b.fmul(unit, _constant(float(rate.value))), _constant(0.0))
-            row = b.add(b.mul(self.k, _constant(self.width)), _constant(m))
-            b.store(coefficient, b.gep(self.series, [row]))
+            b.store(coefficient, b.gep(self.series, [b.add(b.mul(self.k, _constant(self.width)), _constant(m))]))
             self._keep(x, coefficient, *map(_constant, self._row(x)))
 
     def _write_coefficient(self, x: Scalar, *row: Any) -> None:

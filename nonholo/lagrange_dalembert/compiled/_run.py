@@ -80,7 +80,8 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
     Or, at a node, those of the velocity that belongs to a momentum: then nothing moves on arrival.
 
     Returns:
-        The functions of `CoordinateBody`, and how many numbers `settle` writes; None if JAX must solve them.
+        The functions of `CoordinateBody`, and how many numbers `settle` writes: the border, of those that stay the
+        same and are used by such that vary, or are results. None if JAX must solve them.
     """
     s = family.constraints
     equations_of = _newton.of_node if at_node else _newton.of_step
@@ -103,7 +104,8 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         *results, doubt = whole.results
         outputs = [*results, whole.formulas("add", doubt, whole.doubt)]
         constants, varying = ([each for each in whole.inputs if each.varies is kind] for kind in (False, True))
-        border = _border(outputs)
+        operands = [x for each in operations_between(outputs, ()) if each.varies for x in each.arguments]
+        border = list(dict.fromkeys(x for x in [*operands, *outputs] if not x.varies and x.value is None))
         write_function(module, "arrive", first.inputs, [*first.results, first.doubt])
         write_function(module, "settle", constants, border)
         write_function(module, "correct", [*border, *varying], outputs)
@@ -134,12 +136,6 @@ def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...], 
     except UntranslatableError:
         return None
     return Values(FUNCTION(code["values"]), list(map(tuple, results)))
-
-
-def _border(results: list[Scalar]) -> list[Scalar]:
-    """Return the numbers that stay the same and are used by such that vary, or are results."""
-    operands = [other for each in operations_between(results, ()) if each.varies for other in each.arguments]
-    return list(dict.fromkeys(each for each in [*operands, *results] if not each.varies and each.value is None))
 
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
@@ -178,7 +174,6 @@ def advance(
         The good steps, the state there and the outcome.
     """
     body, count, total, code = _body(system, h, *state[:2]), 0, len(table[0]) * every, 0
-    most = 1 if body else ROWS
     while code == 0 and count < total:
         if body:
             flat = np.concatenate([x.ravel() for x in state])
@@ -186,7 +181,7 @@ def advance(
             ends = np.cumsum([body.place, body.velocity])
             state = flat[: ends[0]].reshape(state[0].shape), flat[ends[0] : ends[1]], flat[ends[1] :]
         if count < total:
-            good, state, code, columns = definition(state, sign, np.int64(min(most, total - count)))
+            good, state, code, columns = definition(state, sign, np.int64(min(1 if body else ROWS, total - count)))
             marks = np.arange(-count % every, good, every)
             for column, entries in zip(table, columns, strict=True):
                 column[(count + marks) // every] = entries[marks].reshape(len(marks), column.shape[1])
@@ -200,9 +195,11 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     Returns:
         None where there are no formulas, or doubts.
     """
-    nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
-    if nodes is None:
-        return None
+    nodes = []
+    if system.is_driven and len(q):  # velocities that belong to the momenta
+        body, nodes = _body(system, h, q[0], v[0], at_node=True), [np.empty_like(v)]
+        if not (body and each_root(body, q.reshape(len(q), -1), v, *nodes)):
+            return None
     columns = [*(np.asarray(x)[None] for x in (*system.numbers_of_formulas, float(h))), q, v, *nodes]
     code = values(function, system.form, *(column.shape[1:] for column in columns))
     return code and evaluate(code, len(q), *columns)
@@ -231,9 +228,3 @@ def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
     spans = itertools.pairwise(itertools.accumulate(map(math.prod, shapes), initial=0))
     return [table[:, begin:end].reshape(len(table), *shape) for (begin, end), shape in zip(spans, shapes, strict=True)]
-
-
-def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:
-    """Return the velocities that belong to the momenta at the nodes; None where they are not trusted."""
-    body, velocities = _body(system, h, q[0], v[0], at_node=True), np.empty_like(v)
-    return (velocities,) if body and each_root(body, q.reshape(len(q), -1), v, velocities) else None

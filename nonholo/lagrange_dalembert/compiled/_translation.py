@@ -37,8 +37,7 @@ def translate(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np
         return _constants(f, atom.val) if hasattr(atom, "val") else values[atom]
 
     for step in jaxpr.eqns:
-        results = _applied(f, step, [read(atom) for atom in step.invars])
-        values |= dict(zip(step.outvars, results, strict=True))
+        values |= dict(zip(step.outvars, _applied(f, step, [read(atom) for atom in step.invars]), strict=True))
     return [read(atom) for atom in jaxpr.outvars]
 
 
@@ -267,8 +266,7 @@ def _places(
     corners[..., list(axes)] = indices
     for axis, along in zip(*batching, strict=True):
         corners[..., axis] = np.indices(batch)[along]
-    most = np.array(shape) - sizes
-    inside = np.clip(corners, 0, most)
+    inside = np.clip(corners, 0, np.array(shape) - sizes)
     if mode != GatherScatterMode.CLIP and not np.array_equal(inside, corners):
         raise UntranslatableError("an index out of bounds")
     offsets = np.moveaxis(np.indices(tuple(sizes)), 0, -1)

@@ -48,7 +48,10 @@ class Parameters(Mapping[str, Any]):
         return len(self._numbers)
 
     def __repr__(self) -> str:
-        return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
+        shown_by = (
+            (key, f"shape {np.shape(x)}" if is_traced(x) or np.ndim(x) else float(x)) for key, x in self.items()
+        )
+        return f"{{{', '.join(f'{key!r}: {x}' for key, x in shown_by)}}}"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Parameters) and self._key == other._key
@@ -70,10 +73,6 @@ class Parameters(Mapping[str, Any]):
             raise error(where, "name parameters of the system", shown(key), remedy)
         changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
         return Parameters(self._numbers | changes)
-
-
-def _brief(value: Any) -> str:
-    return f"shape {np.shape(value)}" if is_traced(value) or np.ndim(value) else repr(float(value))
 
 
 def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:
@@ -141,7 +140,8 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
 
     def takes_time(self, function: str) -> bool:
         """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
-        return bool(self._time(function))
+        count = self.of_time.get(function, np.inf) + len(self._shapes_given)
+        return traced.takes_time(getattr(self, function), count)
 
     @functools.cached_property
     def constraints(self: Any) -> int:
@@ -208,15 +208,11 @@ class AbstractParametricSystem(systems.AbstractCoordinateSystem[systems.Discreti
         """The last argument of all functions, the shapes of the parameters, if there are any."""
         return (self.parameters.structure,) if self.parameters else ()
 
-    def _time(self, name: str) -> tuple[Any, ...]:
-        """Return the shape of the time if a function is called with it."""
-        count = self.of_time.get(name, np.inf) + len(self._shapes_given)
-        return (jax.ShapeDtypeStruct((), float),) if traced.takes_time(getattr(self, name), count) else ()
-
     def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
         """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""
         if (function := getattr(self, name)) is not None or name == self.functions[0]:
-            arguments = (*arguments, *self._time(name), *self._shapes_given)
+            time = (jax.ShapeDtypeStruct((), float),) if self.takes_time(name) else ()
+            arguments = (*arguments, *time, *self._shapes_given)
             where = f"{type(self).__name__}({name}=...)"
             assign(self, **{name: check(where, function, of, arguments, *demands)})
 
@@ -305,8 +301,7 @@ def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
 def _plain(system: Any) -> Any:
     """Return a system whose numbers stand within its functions, pickled as such."""
     plain = system.bound(*system.parameters.values()) if system.parameters else system
-    recipe = vars(system).get("recipe")
-    if recipe and plain is not system:
+    if plain is not system and vars(system).get("recipe"):
         vars(plain)["recipe"] = (_plain, (system,))
     return plain
 

@@ -90,18 +90,21 @@ class LLSystem(AbstractLLSystem):
         inertia_operator: Any = None,
     ) -> None:
         _mass.checked_group("LLSystem(group=...)", group)
+        where = "LLSystem(mass_tensor=...)"
         if (mass_tensor is None) == (inertia_operator is None):
             got = "neither" if mass_tensor is None else "both"
             remedy = "Pass the mass tensor on SO(n), SE(n) or a group with a form, the inertia operator on any other."
-            raise error("LLSystem(mass_tensor=...)", "be given, or else inertia_operator=", got, remedy)
+            raise error(where, "be given, or else inertia_operator=", got, remedy)
         rows, covectors = subspace_and_annihilator("LLSystem", group.dim, constraint_subspace, annihilator)
-        if mass_tensor is not None:
-            mass_tensor = _tensor(where := "LLSystem(mass_tensor=...)", group, mass_tensor)
-        else:
-            where = "LLSystem(inertia_operator=...)"
-            shape = (group.dim, group.dim)
+        if mass_tensor is None:
+            where, shape = "LLSystem(inertia_operator=...)", (group.dim, group.dim)
             remedy = f"Pass the symmetric {shape} matrix that takes body velocities to body momenta."
             inertia_operator = symmetric(where, array(where, inertia_operator, shape, remedy), remedy)
+        elif group.form is None:
+            instead = "Pass inertia_operator= instead or, if the group preserves a form G, MatrixGroup(basis, form=G)."
+            mass_tensor = _mass.group_mass_tensor(where, group, mass_tensor, instead)
+        else:
+            mass_tensor = _mass.form_mass_tensor(where, group, mass_tensor)
         self._hold(group, mass_tensor, inertia_operator, rows, covectors)
         if len(rows) and mass_tensor is not None and group.form is not None:
             _refuse_singular(where, self)
@@ -151,21 +154,12 @@ class LLSystem(AbstractLLSystem):
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
-        if self.mass_tensor is None:
-            return self.given_inertia
-        return super().inertia_operator
+        return self.given_inertia if self.mass_tensor is None else super().inertia_operator
 
     @functools.cached_property
     def normal_form(self) -> NormalForm | None:
         """The top or sleigh that the system is; None if it is neither, or has no mass tensor."""
         return recognized_form(self)
-
-
-def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:
-    if group.form is not None:
-        return _mass.form_mass_tensor(where, group, value)
-    instead = "Pass inertia_operator= instead or, if the group preserves a form G, MatrixGroup(basis, form=G)."
-    return _mass.group_mass_tensor(where, group, value, instead)
 
 
 def _refuse_singular(where: str, system: LLSystem) -> None:

@@ -81,9 +81,8 @@ class ChaplyginSleigh(AbstractLLSystem):
     def frame(self) -> Float[Array, "... 3 3"]:
         """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()
-        zero, one = xp.zeros_like(self.b), xp.ones_like(self.b)
-        rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))
-        return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+        zero = xp.zeros_like(self.b)
+        return self.group.exp(xp.stack([zero, zero, self.b], axis=-1))
 
     @system_memo
     def canonical(self) -> "ChaplyginSleigh":

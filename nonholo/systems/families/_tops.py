@@ -221,8 +221,7 @@ class SuslovTop(AbstractTop, AbstractLLSystem):
         if self.axis is None or tuple(self.axis) == _E3:
             return self
         tensor = self.frame.T @ self.mass_tensor @ self.frame
-        halves = tensor + tensor.__array_namespace__().swapaxes(tensor, -1, -2)
-        return replace_numbers(self, mass_tensor=halves / 2, axis=np.array(_E3))
+        return replace_numbers(self, mass_tensor=(tensor + tensor.mT) / 2, axis=np.array(_E3))
 
     @property
     def coupling(self) -> Float[Array, "... k"]:

@@ -249,7 +249,13 @@ class Forced(AbstractSystem):
             ValueError: The free step does not keep its energy.
         """
         if self.slips:
-            return self._slips(exact and not is_composition)
+            if not exact or is_composition or self.scheme == "variational":
+                got = "another order (in substeps back in time slips add energy), scheme, difference or constraint, "
+                got += "or an inertia operator"
+                remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
+                demand = "be discretized with order 2 and the scheme 'energy'"
+                raise error("Forced(force=Slip(...))", demand, got, remedy)
+            return True
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
@@ -257,15 +263,6 @@ class Forced(AbstractSystem):
         if self.scheme is not None or not exact:
             return self.scheme == "energy"
         return is_composition or self.rank < self.group.dim
-
-    def _slips(self, exact: bool) -> bool:
-        """Refuse steps of rows that yield beside those of order 2 that keep their energy."""
-        if not exact or self.scheme == "variational":
-            got = "another order (in substeps back in time slips add energy), scheme, difference or constraint, "
-            got += "or an inertia operator"
-            remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
-            raise error("Forced(force=Slip(...))", "be discretized with order 2 and the scheme 'energy'", got, remedy)
-        return True
 
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
@@ -362,7 +359,7 @@ class Forced(AbstractSystem):
 
     def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
-        k, along = E.shape[-1], E.swapaxes(-1, -2)
+        k, along = E.shape[-1], E.mT
         C = np.zeros((self.group.dim,) * 2) if self.friction is None else self.friction.matrix
         D = along @ C @ E @ inverse_of(along @ self.inertia_operator @ E)
         xp, nothing = D.__array_namespace__(), 0 * D
@@ -375,7 +372,7 @@ class Forced(AbstractSystem):
     def kick_at(self, g: Poses, tau: Array) -> tuple[Array, ...]:
         r"""Return what kicks over a time take from poses: $E$ and $E B^{-1}$, with friction V and W as well."""
         E = self.directions(g)
-        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+        to_velocity = E @ inverse_of(E.mT @ self.inertia_operator @ E)
         return E, to_velocity, *(() if self.friction is None else self.propagator(E, tau)[1:])
 
     def impulse(self, r: Array, constant: Array, tau: Array, kick: tuple[Array, ...]) -> Covectors:
@@ -383,7 +380,7 @@ class Forced(AbstractSystem):
         if self.friction is None:
             return tau * constant
         E, to_velocity, push, gather = kick
-        integral = push @ r[..., None] + gather @ (E.swapaxes(-1, -2) @ constant[..., None])
+        integral = push @ r[..., None] + gather @ (E.mT @ constant[..., None])
         return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
 
     def impulses(

@@ -294,5 +294,4 @@ def refuse_table(where: str, table: Any) -> None:
 
 
 def _kind(force: Any) -> str:
-    kinds = {Friction: "friction", Slip: "slip"}
-    return kinds.get(type(force)) or ("function" if callable(force) else "table")
+    return {Friction: "friction", Slip: "slip"}.get(type(force)) or ("function" if callable(force) else "table")

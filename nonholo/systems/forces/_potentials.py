@@ -74,7 +74,7 @@ class Linear(AbstractLinear):
 
     def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N N"], Float[Array, "dim N N"]]:
         """Return vectors F_j and L: -dU is the sum of L_j g^T F_j, over the columns of A."""
-        return -self.matrix.T, group.basis.swapaxes(-1, -2)
+        return -self.matrix.T, group.basis.mT
 
 
 def covector_of(group: AbstractMatrixGroup, A: Array, g: Poses) -> Covectors:
@@ -86,8 +86,7 @@ def covector_of(group: AbstractMatrixGroup, A: Array, g: Poses) -> Covectors:
 def leaning(g: Poses, W: Poses) -> Poses:
     r"""Return $g(I + Y) = 2 g W(I + W)^{-1}$ with the Cayley matrix Y of displacements."""
     xp: Any = W.__array_namespace__()
-    one = xp.eye(W.shape[-1])
-    return g @ xp.linalg.solve(one + W, 2 * W)
+    return g @ xp.linalg.solve(xp.eye(W.shape[-1]) + W, 2 * W)
 
 
 def homogeneous(group: AbstractMatrixGroup, vector: Array, last: float) -> Array:
