@@ -197,6 +197,14 @@ def test_the_twistcar_is_fitted_from_poses() -> None:
     assert 0.3 <= np.sqrt(np.mean(off**2)) <= 1.7  # 18 numbers: 1 with a deviation of 0.17
 
 
+@pytest.mark.profile("long", instead="test_noisy_positions_tell_two_numbers")
+def test_95_of_100_twistcars_are_within_three_deviations() -> None:
+    """All three numbers of a record are within three standard deviations, in 95 of 100 records and more."""
+    off = np.array([misses(1000 + seed) for seed in range(100)])
+    assert np.count_nonzero((np.abs(off) <= 3.0).all(axis=1)) >= 95
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(1.0, abs=0.15)
+
+
 def test_the_dataset_of_an_orbit_is_a_record() -> None:
     """An orbit and its dataset have the same numbers of each coordinate."""
     orbit = nh.simulate(nh.discretize(ROBOT, H), configuration=(0.5, -0.2, 0.0, 0), momentum=(0.8, 0, 1, 0.8), steps=3)

@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from bodies import ATTRACTING, mass_tensor
@@ -206,3 +207,20 @@ test_refusals = refusals(
     (lambda: nh.simulate(nh.discretize(SLEIGH, 1e-6), restricted_velocity=(0.5, 0.5), steps=2), "within 1000000 steps"),
     ask=lambda make: nh.asymptotics(make()),
 )
+
+
+@pytest.mark.parametrize("parameters", [(0.9, 0.4, 0.7, 0.35), (1.5, 0.6, -0.5, 0.2), (1.0, 0.75, 0.5, 0.1)])
+def test_heading_turn_to_twelve_digits(parameters: tuple) -> None:
+    """The turn is the integral of dtheta = du/(a omega(u)) over the level, taken to 30 digits."""
+    with mpmath.workdps(30):
+        m, J, a, _ = (mpmath.mpf(x) for x in parameters)
+        E, inertia = mpmath.mpf(2), J + m * a * a
+        edge = mpmath.sqrt(2 * E / m)
+
+        def turned(x: mpmath.mpf) -> mpmath.mpf:
+            return edge * mpmath.cos(x) / (abs(a) * mpmath.sqrt((2 * E - m * (edge * mpmath.sin(x)) ** 2) / inertia))
+
+        expected = mpmath.quad(
+            turned, [-mpmath.pi / 2 + mpmath.mpf(10) ** -13, 0, mpmath.pi / 2 - mpmath.mpf(10) ** -13]
+        )
+    assert abs(nh.asymptotics(nh.ChaplyginSleigh(*parameters)).heading_turn / float(expected) - 1) <= 1e-12

@@ -1,11 +1,14 @@
-"""Linear equations beside steady motions, against closed forms and one another."""
+"""Linear equations beside steady motions, against closed forms, differences of the equations, and one another."""
 
+from collections.abc import Callable
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from analysis.equations import G, hoop
+from comparisons import derivatives
 from refusals import refusals
 
 import nonholo as nh
@@ -61,6 +64,78 @@ def test_an_upright_disk_is_stable_above_its_critical_speed(roll: float) -> None
     assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-12  # a difference of 22 and 22 at 3
 
 
+CASES = {
+    "upright disk": (DISK, rolling(0.0, 0.0, 3.0)),
+    "disk on a circle": (DISK, rolling(0.4, 1.5, steady_roll(0.4, 1.5))),
+    "snakeboard on a circle": (
+        nh.examples.snakeboard().system,
+        {"configuration": [0, 0, 0.7, 0, 0.4], "body_velocity": [np.cos(0.7), np.sin(0.7), np.tan(0.4), 0.3, 0.0]},
+    ),
+    "oscillators": (
+        nh.examples.chaotic_quartic_oscillator().system,
+        {"configuration": np.zeros(7), "body_velocity": np.zeros(7)},
+    ),
+}
+
+
+Reader = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def states_near(
+    system: Any, names: tuple[str, ...], q: np.ndarray, v: np.ndarray, ahead: float = 0.0
+) -> tuple[Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], Reader]:
+    """Return the place and the velocity as a function of the states of a linearization, and what reads these off.
+
+    Other velocities are found from the constraint at a place ahead, which a midpoint is.
+    """
+    columns = [system.coordinates.index(name) for name in names if not name.endswith("'")]
+    free = [system.coordinates.index(name[:-1]) for name in names if name.endswith("'")]
+    tied = np.setdiff1d(np.arange(system.dimension), free)
+
+    def varied(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        at, moving = q.copy(), v.copy()
+        at[columns], moving[free] = z[: len(columns)], z[len(columns) :]
+        for _ in range(30 if ahead else 1):  # the midpoint depends on what is found
+            with jax.enable_x64(True):
+                rows = np.asarray(system.plain.constraint_forms(jnp.asarray(at + ahead * moving)))
+            moving[tied] = -np.linalg.solve(rows[:, tied], rows[:, free] @ moving[free])
+        return at, moving
+
+    return varied, lambda at, moving: np.concatenate([at[columns], moving[free]])
+
+
+@pytest.mark.profile("routes", keep=["upright disk", "disk on a circle"])
+@pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
+def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: dict[str, Any]) -> None:
+    """From the definition: vary kept states, find the other velocities from the constraint, difference the rates."""
+    result, field = nh.linearize(system, **start), nh.vector_field(system)
+    q, v = (np.asarray(start[name], float) for name in ("configuration", "body_velocity"))
+    varied, read = states_near(system, result.names, q, v)
+
+    def rates(z: np.ndarray) -> np.ndarray:
+        return read(*np.split(field(0.0, np.concatenate(varied(z))), 2))
+
+    np.testing.assert_allclose(result.matrix, derivatives(rates, read(q, v), 8e-3), rtol=0, atol=1e-9)
+
+
+@pytest.mark.profile("routes", instead="test_multipliers_tend_to_rates")
+@pytest.mark.parametrize("name", ["upright disk", "snakeboard on a circle", "oscillators"])
+def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
+    """From the definition: vary kept states, find displacements on the discrete constraint, difference a step."""
+    (system, start), h = CASES[name], 0.05
+    discrete = nh.discretize(system, h)
+    result, first = nh.linearize(discrete, **start), nh.simulate(discrete, steps=1, **start)
+    q, v = first.configuration[0], first.body_velocity[0]
+    varied, read = states_near(system, result.names, q, v, h / 2)
+
+    def after(z: np.ndarray) -> np.ndarray:
+        at, moving = varied(z)
+        orbit = nh.simulate(discrete, configuration=at, displacement=h * moving, steps=1)
+        return read(orbit.configuration[1], orbit.body_velocity[1])
+
+    np.testing.assert_allclose(result.matrix, derivatives(after, read(q, v), 8e-3), rtol=0, atol=1e-9)
+
+
 def test_multipliers_tend_to_rates() -> None:
     """The logarithm of a multiplier over the step is the rate, with an error that falls by four with half the step."""
     start = rolling(0.0, 0.0, 12.0)
@@ -74,7 +149,7 @@ def test_multipliers_tend_to_rates() -> None:
 
 def test_a_map_has_steady_motions_of_its_own() -> None:
     """A disk on a circle leans as it did after 50 steps; its roll is that of the flow up to the step squared."""
-    start, moved = rolling(0.4, 1.5, steady_roll(0.4, 1.5)), []
+    start, moved = CASES["disk on a circle"][1], []
     for h in (0.06, 0.03):
         discrete = nh.discretize(DISK, h)
         result = nh.equilibria(discrete, **start)

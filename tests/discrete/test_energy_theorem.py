@@ -104,27 +104,6 @@ def test_a_root_that_goes_to_infinity() -> None:
     assert np.abs(F(path.y[:, -1]) - path.t[-1] * r).max() < 1e-4 * np.abs(r).max()
 
 
-@pytest.mark.profile("problems", keep=["SO(2,1)-2-*", "Sp(4)-3-any-table"])
-@pytest.mark.parametrize("is_driven", [False, True], ids=["potential", "table"])
-@pytest.mark.parametrize("is_linear", [True, False], ids=["linear", "any"])
-@pytest.mark.parametrize(("name", "k"), [("SO(2,1)", 2), ("SO(3,1)", 3), ("Sp(4)", 3)])
-def test_energy_under_forces(name: str, k: int, is_linear: bool, is_driven: bool) -> None:
-    """Theorems 18.1 and 18.2: T + U changes by the work of a force alone, which is exact, and by that of none else."""
-    rng = np.random.default_rng(4)
-    one = system(FORMS[name], k, rng)
-    size, force = one.group.size, 0.3 * rng.normal(size=(20, one.group.dim)) if is_driven else None
-    linear = nh.Linear(0.2 * rng.normal(size=(size, size)))
-    potential = linear if is_linear else lambda g: np.cos(g[0, 1]) + 0.1 * g[1, 0] ** 3 + 0.3 * g[-1, 0] * g[0, 0]
-    forced = nh.Forced(one, potential, force)
-    orbit = nh.simulate(nh.discretize(forced, 0.1), restricted_velocity=velocity(one, 0.8, rng), steps=20)
-    U = forced.potential_energy(orbit.configuration)
-    kinetic = one.constrained_energy(orbit.restricted_momentum)
-    miss = kinetic - kinetic[0] + U - U[0] - orbit.work
-    assert np.abs(miss).max() <= 20 * _A_STEP * (np.abs(U).max() + np.abs(kinetic).max())
-    assert np.ptp(U) > 1e-3  # there is an energy to lose
-    assert (np.abs(orbit.work).max() > 1e-3) == is_driven
-
-
 @pytest.mark.parametrize("order", [2, 4])
 def test_poses_that_overflow_end_the_run(order: int) -> None:
     """Boosts grow without bound: when the pose is no longer a number the outcome is nonfinite, the energy exact."""
