@@ -191,12 +191,16 @@ class Formulas:
         if None not in values:
             with np.errstate(all="ignore"):
                 return self.constant(OPERATIONS[name].evaluate(*values))
+        return self._shorter(name, arguments) or Scalar(name, arguments)
 
-        first, last = arguments[0], arguments[-1]  # a choice that is fixed, and operations with 0 or 1, are shorter
-        if name == "select" and (first.value is not None or arguments[1] is last):
-            return last if first.value or arguments[1] is last else arguments[1]
+    def _shorter(self, name: str, arguments: tuple[Scalar, ...]) -> Scalar | None:
+        """Return what an operation with 0 or 1, or a choice that is fixed, comes to."""
+        first, last = arguments[0], arguments[-1]
+        if name == "select":
+            truth = True if arguments[1] is last else first.value
+            return None if truth is None else last if truth else arguments[1]
         rule = _IF_FIRST.get((name, first.value)) or _IF_LAST.get((name, last.value))
-        return (rule and rule(self, name, first, last)) or Scalar(name, arguments)
+        return rule and rule(self, name, first, last)
 
     def _zero(self, name: str, *factors: Scalar) -> Scalar:
         product = Scalar(name, factors)
