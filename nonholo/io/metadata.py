@@ -75,6 +75,8 @@ class OrbitMetadata(_About):
     def _have_one_length(self) -> "OrbitMetadata":
         if "time" not in self.arrays or len({shape[0] for shape in self.arrays.values()}) != 1:
             raise ValueError("arrays: must have one length, that of time")
+        if self.arrays.keys().isdisjoint(("canonical/reduced_momentum", "momentum")):
+            raise ValueError("arrays: must have momenta")
         if "kind" not in self.motion:
             raise ValueError("motion: must have a kind")
         if self.run is None and self.outcome is None:

@@ -277,6 +277,7 @@ def test_foreign_stores_are_refused(tmp_path: Path) -> None:
         ("arrays", '{"../other.zarr/time": [21], "time": [21]}', "'../other.zarr/time' is no name"),
         ("arrays", '{"/etc/time": [21], "time": [21]}', "is no name"),
         ("arrays", '{"time": [21], "energy": [20]}', "must have one length"),
+        ("arrays", '{"time": [21], "energy": [21]}', "must have momenta"),
         ("versions", "7", "versions"),
         ("outcome", "splendid", "outcome: Input should be 'successful'"),
         ("run", '{"steps": 1e300, "rows": 1, "reconstruct": true}', "run.steps"),
