@@ -340,11 +340,7 @@ def _next_generation(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, 
     images = [_images(frame, *node) for node in zip(X, is_real, strict=True)]
     matrices, reality = (np.concatenate(column) for column in zip(*images, strict=True))
     parents = np.repeat(np.arange(len(X)), [len(each) for each, _ in images])
-    entries, first = matrices * frame.stretch, []  # those that repeat none before them, in a unit of length
-    for i, candidate in enumerate(entries):
-        distances = np.abs(entries[first] - candidate).max(axis=(1, 2))
-        if not np.any(distances <= _SAME * max(1.0, np.abs(candidate).max())):
-            first.append(i)
+    first = _first_of_equals(matrices * frame.stretch)
     return matrices[first], reality[first], parents[first]
 
 
@@ -355,3 +351,15 @@ def _images(frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
         r = r.real
     _, zeros, increments = roots_over(frame, frame.equations(frame.discrete.time_step * system.to_canonical(r)))
     return increments, np.array([root.is_real for root in zeros], dtype=bool)
+
+
+def _first_of_equals(X: Array) -> Int[np.ndarray, "G"]:
+    """Return the indices of matrices minus the identity, in a unit of length, that repeat none before them."""
+    distinct = np.empty_like(X)
+    indices: list[int] = []
+    for i, candidate in enumerate(X):
+        distances = np.abs(distinct[: len(indices)] - candidate).max(axis=(1, 2))
+        if not np.any(distances <= _SAME * max(1.0, np.abs(candidate).max())):
+            distinct[len(indices)] = candidate
+            indices.append(i)
+    return np.array(indices, dtype=np.int64)

@@ -48,10 +48,7 @@ class Parameters(Mapping[str, Any]):
         return len(self._numbers)
 
     def __repr__(self) -> str:
-        shown_by = (
-            (key, f"shape {np.shape(x)}" if is_traced(x) or np.ndim(x) else float(x)) for key, x in self.items()
-        )
-        return f"{{{', '.join(f'{key!r}: {x}' for key, x in shown_by)}}}"
+        return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Parameters) and self._key == other._key
@@ -73,6 +70,10 @@ class Parameters(Mapping[str, Any]):
             raise error(where, "name parameters of the system", shown(key), remedy)
         changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
         return Parameters(self._numbers | changes)
+
+
+def _brief(value: Any) -> str:
+    return f"shape {np.shape(value)}" if is_traced(value) or np.ndim(value) else repr(float(value))
 
 
 def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:

@@ -36,18 +36,23 @@ def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> Tra
         return function
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
-    if isinstance(arguments[-1], dict) and not takes(function, count := len(arguments)):
-        got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
-        raise error(where, "take the parameters of the system as its last argument", got, remedy)
+    _check_parameters(where, function, arguments)
     result = _attempt(where, of, lambda: TracedFunction(function, arguments))
     if any(getattr(constant, "dtype", None) == jnp.float32 for constant in result.constants):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
     kind = result.program.out_avals[0].dtype.kind
     if kind in ("c" if result.shape else "biuc"):
-        got = {"c": "complex numbers"}.get(kind, "an integer")
+        got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
     return result
+
+
+def _check_parameters(where: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    """Refuse a function that does not take the parameters of its system, last."""
+    if isinstance(arguments[-1], dict) and not takes(function, count := len(arguments)):
+        got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
+        raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
 
 def _attempt(where: str, of: str, trace: Callable[[], Any]) -> Any:
